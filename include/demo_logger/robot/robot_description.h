@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace demo_logger {
+
+/// Mass properties of a rigid body in the frame of its joint (link frame of the URDF).
+struct BodyInertia {
+  double mass = 0.0;                                  // [kg]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   // [m] of mass, in the link frame
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  // [kg m²] about the centre of mass, axes of the link frame
+};
+
+enum class JointType { revolute, continuous, prismatic };
+
+/// One moving joint of the chain with the body it moves. Every link fixed to that body, beside the chain or past the
+/// tip, is lumped into it.
+struct ArmJoint {
+  std::string name;
+  std::string link;  // child link
+  JointType type = JointType::revolute;
+  Eigen::Isometry3d X_parent_joint =
+      Eigen::Isometry3d::Identity();  // pose at q = 0 in the previous moving link (the base for the first)
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();          // unit, in the joint frame
+  double lower = -std::numeric_limits<double>::infinity();  // [rad or m], soft limits intersected with hard ones
+  double upper = std::numeric_limits<double>::infinity();
+  double velocity_limit = std::numeric_limits<double>::infinity();  // [rad/s or m/s]
+  double effort_limit = std::numeric_limits<double>::infinity();    // [N m or N]
+  double damping = 0.0;                                             // [N m s/rad or N s/m]
+  double friction = 0.0;                                            // [N m or N] Coulomb
+  BodyInertia body;
+};
+
+/// One arm as one chain of moving joints, base to tip, made once from a URDF and used by KDL and by Bullet alike.
+struct RobotDescription {
+  std::string name;
+  std::string base;
+  std::string tip;
+  std::string urdf_sha256;  // of the text it was read from
+  std::vector<ArmJoint> joints;
+  Eigen::Isometry3d X_lastlink_tip = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d gravity{0.0, 0.0, -9.81};  // [m/s²] in the base frame: −z of the URDF root
+  bool has_inertia = false;                  // every moving body has mass
+
+  std::vector<std::string> jointNames() const;
+};
+
+struct DescriptionOptions {
+  std::string base;                      // empty: the root link
+  std::string tip;                       // empty: the only leaf, else an error naming the leaves
+  std::map<std::string, double> locked;  // side joints held elsewhere than 0 or the nearest limit [rad or m]
+  double gravity = 9.81;                 // [m/s²] magnitude
+};
+
+/// Reads the URDF. Throws ModelError in one sentence: no such link, tip not below base, no moving joint between them,
+/// floating or planar joint, zero axis, swapped limits, negative mass, mimic of a missing joint, malformed XML.
+RobotDescription describeRobot(const std::string& urdf_xml, const DescriptionOptions& options);
+
+/// As above from a file; FileError if it cannot be read.
+RobotDescription describeRobotFile(const std::string& path, const DescriptionOptions& options);
+
+}  // namespace demo_logger
