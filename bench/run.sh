@@ -1,0 +1,42 @@
+#!/bin/bash
+# Builds the measurements and runs them: writes doc/benchmarks/{recording_cost,synchronisation_error}.md with the machine and the date.
+set -euo pipefail
+if [ "${1:-}" = --help ]; then
+  echo "usage: bench/run.sh [recording_cost|synchronisation_error] [options of recording_cost.py]"
+  echo "Needs what scripts/test.sh installs. About 15 minutes for all; without a name it runs both."
+  exit 0
+fi
+project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+which=${1:-all}
+[ $# -eq 0 ] || shift
+cmake -S "$project" -B "$project/build" -DDEMO_LOGGER_BENCH=ON >/dev/null
+cmake --build "$project/build" -j "$(nproc)" >/dev/null
+set +u
+. "$project/devel/setup.bash"
+set -u
+programs=$project/devel/lib/demo_logger
+[ -x "$programs/paced_publisher" ] || programs=$project/build/bench
+
+machine() {
+  echo "Measured $(date +%Y-%m-%d) on $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) cores," \
+    "$(awk '/MemTotal/{printf "%.0f GiB", $2 / 1048576}' /proc/meminfo), Linux $(uname -r), $(. /etc/os-release && echo "$PRETTY_NAME")," \
+    "load average $(cut -d' ' -f1-3 /proc/loadavg) at the start. Shared machine: trust ratios and medians."
+  echo
+}
+
+measure() {  # title, output, command …
+  local title=$1 output=$2
+  shift 2
+  { echo "# $title"; echo; machine; "$@"; } >"$output.new"
+  mv "$output.new" "$output"
+  echo "$output"
+}
+
+mkdir -p "$project/doc/benchmarks"
+if [ "$which" != recording_cost ]; then
+  measure "Synchronisation error against truth" "$project/doc/benchmarks/synchronisation_error.md" "$programs/synchronisation_error"
+fi
+if [ "$which" != synchronisation_error ]; then
+  measure "What recording costs and loses" "$project/doc/benchmarks/recording_cost.md" \
+    /usr/bin/python3 "$project/bench/recording_cost.py" "$programs" "$@"
+fi
