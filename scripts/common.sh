@@ -72,3 +72,7 @@ buildTree() {
     fail "the build failed; the whole log is $log"
   fi
 }
+
+freePort() {
+  python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])'
+}

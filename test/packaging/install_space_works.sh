@@ -1,0 +1,41 @@
+#!/bin/bash
+# Installs into the build tree and works from there with nothing but its setup file: rosrun, roslaunch, PATH.
+# usage: install_space_works.sh BUILD_FOLDER INSTALL_PREFIX
+set -euo pipefail
+build=$1
+staging=$build/install_space
+installed=$staging$2
+
+rm -rf "$staging"
+# The setup files go to the prefix chosen when configuring, so the whole is moved below the staging folder instead.
+DESTDIR=$staging cmake --install "$build" >"$build/install.log" 2>&1 || { cat "$build/install.log"; exit 1; }
+
+home=$(mktemp -d)
+launched=
+trap 'kill -INT $launched 2>/dev/null && wait $launched; rm -rf "$home"' EXIT
+export HOME=$home ROS_HOME=$home ROS_LOG_DIR=$home/log ROS_HOSTNAME=localhost
+unset ROS_MASTER_URI ROS_PACKAGE_PATH CMAKE_PREFIX_PATH LD_LIBRARY_PATH PYTHONPATH PKG_CONFIG_PATH
+PATH=/usr/sbin:/usr/bin:/sbin:/bin
+cd "$home"
+set +u
+# shellcheck disable=SC1091
+source "$installed/setup.bash"
+set -u
+
+expect() {
+  local found=$1 wanted=$2 what=$3
+  [ "$found" = "$wanted" ] || { echo "$what is \"$found\", expected \"$wanted\""; exit 1; }
+}
+expect "$(rospack find demo_logger)" "$installed/share/demo_logger" "the package's folder"
+expect "$(command -v demo_tool)" "$installed/lib/demo_logger/demo_tool" "demo_tool on PATH"
+rosrun demo_logger demo_tool --help >/dev/null
+rosrun demo_logger draw_demonstration.py --help >/dev/null
+
+port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])')
+export ROS_MASTER_URI=http://localhost:$port
+# A short demonstration, from the simulated arm to the file.
+timeout --signal=INT 100 roslaunch --port "$port" demo_logger demo.launch output_dir:="$home/demos" duration:=3 \
+  >"$home/launch.log" 2>&1 </dev/null &
+launched=$!
+wait $launched || { cat "$home/launch.log"; echo "demo.launch from the install space failed"; exit 1; }
+demo_tool check "$home/demos/demo_000001.csv" || { cat "$home/launch.log"; exit 1; }
