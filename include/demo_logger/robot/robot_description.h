@@ -45,7 +45,8 @@ struct RobotDescription {
   std::vector<ArmJoint> joints;
   Eigen::Isometry3d X_lastlink_tip = Eigen::Isometry3d::Identity();
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  // [m/s²] in the base frame: −z of the URDF root
-  bool has_inertia = false;                  // every moving body has mass
+  bool has_inertia = false;                  // every moving body has mass properties that matter can have
+  std::string inertia_fault;                 // why not, in one sentence; empty with has_inertia
 
   std::vector<std::string> jointNames() const;
 };
@@ -59,9 +60,16 @@ struct DescriptionOptions {
 
 /// Reads the URDF. Throws ModelError in one sentence: no such link, tip not below base, no moving joint between them,
 /// floating or planar joint, zero axis, swapped limits, negative mass, mimic of a missing joint, malformed XML.
+/// Only what moves with the chain, or turns its base, is judged. Missing or impossible inertia is no error here: it
+/// waits in `inertia_fault` until dynamics are asked for, because kinematics work without.
+/// A velocity or effort limit of 0 means that none was stated.
 RobotDescription describeRobot(const std::string& urdf_xml, const DescriptionOptions& options);
 
-/// As above from a file; FileError if it cannot be read.
+/// As above from a file; FileError if it cannot be read. Messages name the file.
 RobotDescription describeRobotFile(const std::string& path, const DescriptionOptions& options);
+
+/// The same arm with a load held at the tip, its mass properties in the tip frame. Throws ModelError if the load is
+/// not physical (mass not positive, inertia against the triangle inequality).
+RobotDescription withLoad(const RobotDescription& description, const BodyInertia& load);
 
 }  // namespace demo_logger

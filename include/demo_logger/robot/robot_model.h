@@ -28,10 +28,22 @@ class RobotModel {
   /// 6 x n: tip velocity (v of the tip's origin, ω), both in base axes, per joint velocity.
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& q) const;
 
+  /// g(q), the torque that holds the arm still
   Eigen::VectorXd gravity(const Eigen::VectorXd& q) const;
   Eigen::MatrixXd massMatrix(const Eigen::VectorXd& q) const;
+  /// C(q, q̇) q̇
+  Eigen::VectorXd coriolis(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) const;
+  /// M(q) q̈ + C(q, q̇) q̇ + g(q)
   Eigen::VectorXd inverseDynamics(const Eigen::VectorXd& q, const Eigen::VectorXd& dq,
                                   const Eigen::VectorXd& ddq) const;
+
+  /// The same into a result of the caller's, resized if need be: no allocation in a control loop.
+  void jacobian(const Eigen::VectorXd& q, Eigen::MatrixXd& result) const;
+  void gravity(const Eigen::VectorXd& q, Eigen::VectorXd& result) const;
+  void massMatrix(const Eigen::VectorXd& q, Eigen::MatrixXd& result) const;
+  void coriolis(const Eigen::VectorXd& q, const Eigen::VectorXd& dq, Eigen::VectorXd& result) const;
+  void inverseDynamics(const Eigen::VectorXd& q, const Eigen::VectorXd& dq, const Eigen::VectorXd& ddq,
+                       Eigen::VectorXd& result) const;
 
  private:
   class Implementation;

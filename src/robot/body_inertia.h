@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "demo_logger/robot/robot_description.h"
+
+namespace demo_logger {
+
+/// The same matter seen from frame A: `body` is given in frame B.
+BodyInertia movedTo(const Eigen::Isometry3d& X_A_B, const BodyInertia& body);
+
+/// Two rigid bodies as one, both in the same frame.
+BodyInertia lumped(const BodyInertia& a, const BodyInertia& b);
+
+/// Empty if matter can have these mass properties, else what is impossible, as the end of a sentence ("has …").
+/// Possible: finite, mass above 0 (or no matter at all), principal moments I₁ ≤ I₂ ≤ I₃ with 0 ≤ I₁ and I₃ ≤ I₁ + I₂.
+/// A point mass (all zero) and a thin rod (I₃ = I₂) are possible.
+std::string impossibility(const BodyInertia& body);
+
+}  // namespace demo_logger

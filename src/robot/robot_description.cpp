@@ -1,0 +1,203 @@
+#include "demo_logger/robot/robot_description.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "body_inertia.h"
+#include "demo_logger/trajectory/error.h"
+#include "locked_joints.h"
+#include "near_names.h"
+#include "sha256.h"
+#include "urdf_reader.h"
+#include "urdf_tree.h"
+
+namespace demo_logger {
+namespace {
+
+struct PlacedLink {
+  urdf::LinkConstSharedPtr link;
+  Eigen::Isometry3d X_body_link;
+};
+
+/// Everything that moves as one with `first`: itself and all below it, except what lies beyond `next_joint`.
+std::vector<PlacedLink> linksMovingWith(const urdf::LinkConstSharedPtr& first, const std::string& next_joint,
+                                        const urdf::ModelInterface& model, const LockedJoints& locked) {
+  std::vector<PlacedLink> body{{first, Eigen::Isometry3d::Identity()}};
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    const PlacedLink placed = body[i];
+    for (const auto& joint : placed.link->child_joints) {
+      if (joint->name == next_joint) continue;
+      body.push_back(
+          {model.getLink(joint->child_link_name), placed.X_body_link * childInParent(*joint, locked.position(*joint))});
+    }
+  }
+  return body;
+}
+
+/// The lumped body of one moving joint; the first impossibility or absence found goes into `fault` if that is empty.
+BodyInertia lumpedBody(const std::vector<PlacedLink>& links, const std::string& joint, std::string& fault) {
+  BodyInertia body;
+  for (const auto& [link, X_body_link] : links) {
+    const BodyInertia own = inertiaOf(*link);
+    const std::string impossible = impossibility(own);
+    if (own.mass < 0.0) throw ModelError("link '" + link->name + "' has " + impossible);
+    if (!impossible.empty() && fault.empty()) fault = "link '" + link->name + "' has " + impossible;
+    body = lumped(body, movedTo(X_body_link, own));
+  }
+  if (body.mass == 0.0 && fault.empty()) {
+    fault = "nothing that joint '" + joint + "' moves has mass up to the next joint; give link '" +
+            links.front().link->name + "' an <inertial> element";
+  }
+  return body;
+}
+
+/// Hard limits, narrowed by the safety controller's soft ones. urdfdom fills absent soft limits with 0, 0.
+void readLimits(const urdf::Joint& joint, ArmJoint& arm_joint) {
+  const auto stated = [](double limit) { return limit > 0.0 ? limit : std::numeric_limits<double>::infinity(); };
+  if (joint.limits) {
+    if (joint.limits->velocity < 0.0 || joint.limits->effort < 0.0) {
+      throw ModelError("joint '" + joint.name + "' has a negative velocity or effort limit");
+    }
+    arm_joint.velocity_limit = stated(joint.limits->velocity);
+    arm_joint.effort_limit = stated(joint.limits->effort);
+  }
+  if (joint.type == urdf::Joint::CONTINUOUS || !joint.limits) return;
+  arm_joint.lower = joint.limits->lower;
+  arm_joint.upper = joint.limits->upper;
+  if (!joint.safety || (joint.safety->soft_lower_limit == 0.0 && joint.safety->soft_upper_limit == 0.0)) return;
+  arm_joint.lower = std::max(arm_joint.lower, joint.safety->soft_lower_limit);
+  arm_joint.upper = std::min(arm_joint.upper, joint.safety->soft_upper_limit);
+  if (arm_joint.lower > arm_joint.upper) {
+    std::ostringstream sentence;
+    sentence << "joint '" << joint.name << "' has soft limits " << joint.safety->soft_lower_limit << " to "
+             << joint.safety->soft_upper_limit << " that leave nothing of its hard limits " << joint.limits->lower
+             << " to " << joint.limits->upper;
+    throw ModelError(sentence.str());
+  }
+}
+
+void readDynamics(const urdf::Joint& joint, ArmJoint& arm_joint) {
+  if (!joint.dynamics) return;
+  arm_joint.damping = joint.dynamics->damping;
+  arm_joint.friction = joint.dynamics->friction;
+  if (arm_joint.damping < 0.0 || arm_joint.friction < 0.0) {
+    throw ModelError("joint '" + joint.name + "' has negative damping or friction, which would drive it");
+  }
+}
+
+ArmJoint readArmJoint(const urdf::Joint& joint) {
+  ArmJoint arm_joint;
+  arm_joint.name = joint.name;
+  arm_joint.link = joint.child_link_name;
+  arm_joint.type = joint.type == urdf::Joint::PRISMATIC    ? JointType::prismatic
+                   : joint.type == urdf::Joint::CONTINUOUS ? JointType::continuous
+                                                           : JointType::revolute;
+  arm_joint.axis = unitAxis(joint);
+  readLimits(joint, arm_joint);
+  readDynamics(joint, arm_joint);
+  return arm_joint;
+}
+
+/// Rotation that turns root axes into base axes.
+Eigen::Matrix3d rotationFromRootToBase(const urdf::ModelInterface& model, const urdf::LinkConstSharedPtr& base,
+                                       const LockedJoints& locked) {
+  Eigen::Isometry3d X_root_base = Eigen::Isometry3d::Identity();
+  for (const auto& joint : jointsBetween(model, model.getRoot(), base)) {
+    X_root_base = X_root_base * childInParent(*joint, locked.position(*joint));
+  }
+  return X_root_base.linear().transpose();
+}
+
+RobotDescription describeTree(const urdf::ModelInterface& model, const DescriptionOptions& options) {
+  const auto base = options.base.empty() ? model.getRoot() : findLink(model, options.base);
+  const auto tip = options.tip.empty() ? onlyLeaf(model) : findLink(model, options.tip);
+  const auto path = jointsBetween(model, base, tip);
+
+  std::vector<std::string> moving;
+  for (const auto& joint : path) {
+    refuseUnusableJoint(*joint);
+    if (isMoving(*joint)) moving.push_back(joint->name);
+  }
+  if (moving.empty()) {
+    throw ModelError("no moving joint between base '" + base->name + "' and tip '" + tip->name + "'");
+  }
+  const LockedJoints locked(model, path, options.locked);
+
+  RobotDescription description;
+  description.name = model.getName();
+  description.base = base->name;
+  description.tip = tip->name;
+  description.gravity = rotationFromRootToBase(model, base, locked) * Eigen::Vector3d(0.0, 0.0, -options.gravity);
+  Eigen::Isometry3d X_body_link = Eigen::Isometry3d::Identity();  // along the path, since the last moving joint
+  for (const auto& joint : path) {
+    X_body_link = X_body_link * childInParent(*joint, 0.0);
+    if (!isMoving(*joint)) continue;
+    ArmJoint arm_joint = readArmJoint(*joint);
+    arm_joint.X_parent_joint = std::exchange(X_body_link, Eigen::Isometry3d::Identity());
+    const std::size_t next = description.joints.size() + 1;
+    arm_joint.body = lumpedBody(linksMovingWith(findLink(model, arm_joint.link),
+                                                next < moving.size() ? moving[next] : std::string(), model, locked),
+                                arm_joint.name, description.inertia_fault);
+    description.joints.push_back(std::move(arm_joint));
+  }
+  description.X_lastlink_tip = X_body_link;
+  description.has_inertia = description.inertia_fault.empty();
+  return description;
+}
+
+/// `where` stands in front of every sentence.
+RobotDescription describe(const std::string& where, const std::string& urdf_xml, const DescriptionOptions& options) {
+  try {
+    if (!std::isfinite(options.gravity)) throw ModelError("gravity must be a finite number of m/s²");
+    RobotDescription description = describeTree(*parseUrdf(urdf_xml), options);
+    description.urdf_sha256 = sha256(urdf_xml);
+    if (!description.has_inertia) description.inertia_fault = where + ": " + description.inertia_fault;
+    return description;
+  } catch (const ModelError& error) {
+    throw ModelError(where + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> RobotDescription::jointNames() const {
+  std::vector<std::string> names;
+  names.reserve(joints.size());
+  for (const ArmJoint& joint : joints) names.push_back(joint.name);
+  return names;
+}
+
+RobotDescription describeRobot(const std::string& urdf_xml, const DescriptionOptions& options) {
+  return describe("robot description", urdf_xml, options);
+}
+
+RobotDescription describeRobotFile(const std::string& path, const DescriptionOptions& options) {
+  std::error_code status;
+  if (!std::filesystem::exists(path, status)) {
+    throw FileError(path + ": no such file, expected a robot description (URDF)");
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (std::filesystem::is_directory(path, status) || !file) {
+    throw FileError(path + ": cannot be read, expected a robot description (URDF)");
+  }
+  const std::string urdf_xml{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  return describe(path, urdf_xml, options);
+}
+
+RobotDescription withLoad(const RobotDescription& description, const BodyInertia& load) {
+  if (description.joints.empty()) throw ModelError("the load needs an arm with at least one joint");
+  const std::string impossible = load.mass == 0.0 ? "no mass" : impossibility(load);
+  if (!impossible.empty()) throw ModelError("the load at tip '" + description.tip + "' has " + impossible);
+  RobotDescription loaded = description;
+  BodyInertia& last = loaded.joints.back().body;
+  last = lumped(last, movedTo(loaded.X_lastlink_tip, load));
+  return loaded;
+}
+
+}  // namespace demo_logger
