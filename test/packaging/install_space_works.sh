@@ -1,10 +1,11 @@
 #!/bin/bash
 # Installs into the build tree and works from there with nothing but its setup file: rosrun, roslaunch, PATH.
-# usage: install_space_works.sh BUILD_FOLDER INSTALL_PREFIX
+# usage: install_space_works.sh BUILD_FOLDER DEVEL_PREFIX INSTALL_PREFIX
 set -euo pipefail
 build=$1
+devel=$2
 staging=$build/install_space
-installed=$staging$2
+installed=$staging$3
 
 rm -rf "$staging"
 # The setup files go to the prefix chosen when configuring, so the whole is moved below the staging folder instead.
@@ -29,6 +30,8 @@ expect() {
 expect "$(rospack find demo_logger)" "$installed/share/demo_logger" "the package's folder"
 expect "$(command -v demo_tool)" "$installed/lib/demo_logger/demo_tool" "demo_tool on PATH"
 rosrun demo_logger demo_tool --help >/dev/null
+executables() { find "$1/lib/demo_logger" -maxdepth 1 -type f -executable -printf '%f\n' | sort; }
+expect "$(executables "$installed")" "$(executables "$devel")" "what is installed in lib/demo_logger"
 rosrun demo_logger draw_demonstration.py --help >/dev/null
 
 port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])')
