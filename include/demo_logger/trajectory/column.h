@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace demo_logger {
 
@@ -19,5 +21,13 @@ struct Column {
   Interpolation interpolation = Interpolation::none;
   std::string source;  // what it was made from: "joint_states/position/elbow"
 };
+
+/// The words used in files: "state", "slerp", ….
+const char* toString(Role role);
+const char* toString(Interpolation interpolation);
+
+/// Nothing for a word that is none of them.
+std::optional<Role> roleFromString(std::string_view word);
+std::optional<Interpolation> interpolationFromString(std::string_view word);
 
 }  // namespace demo_logger

@@ -98,6 +98,7 @@ struct Metadata {
   std::map<std::string, std::string> original_names;  // column name -> name before it was made portable
   std::string software;
   Provenance provenance;
+  std::map<std::string, std::string> other;  // keys of the sidecar that are not ours -> their JSON, kept as it is
 };
 
 }  // namespace demo_logger
