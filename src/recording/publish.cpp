@@ -1,0 +1,43 @@
+#include "publish.h"
+
+#include <cerrno>
+
+#include "demo_logger/trajectory/error.h"
+#include "episode_name.h"
+
+namespace demo_logger {
+
+std::filesystem::path publish(FileSystem& file_system, const std::filesystem::path& directory, const std::string& id,
+                              SidecarFile& sidecar, const std::function<std::string(const std::string& id)>& text) {
+  std::filesystem::path data = partFiles(directory, id).data;
+  for (std::string final_id = id;; final_id = episodeId(nextEpisodeNumber(directory))) {
+    const EpisodeFiles finals = finalFiles(directory, final_id);
+    if (file_system.exists(finals.data) || file_system.exists(finals.sidecar)) {
+      continue;
+    }
+    sidecar.replace(text(final_id));
+    int result = file_system.rename(data, finals.data);
+    if (result == -EEXIST) {
+      continue;
+    }
+    if (result != 0) {
+      throw FileError(data.string() + " cannot be renamed to " + finals.data.filename().string() + ": " +
+                      errorText(result) + ". Its rows are whole; `demo_tool recover` will finish it.");
+    }
+    data = finals.data;
+    sidecar.giveReserveBack();
+    // A sidecar without a word in it says less than none.
+    result = sidecar.hasText() ? file_system.rename(sidecar.file(), finals.sidecar) : file_system.remove(sidecar.file());
+    if (result == -EEXIST) {
+      continue;
+    }
+    if (result != 0) {
+      throw FileError(sidecar.file().string() + " cannot be renamed to " + finals.sidecar.filename().string() + ": " +
+                      errorText(result) + ". The rows are in " + data.string() + "; `demo_tool recover` will add it.");
+    }
+    file_system.syncDirectory(directory);
+    return data;
+  }
+}
+
+}  // namespace demo_logger
