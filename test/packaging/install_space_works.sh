@@ -30,7 +30,9 @@ expect() {
 expect "$(rospack find demo_logger)" "$installed/share/demo_logger" "the package's folder"
 expect "$(command -v demo_tool)" "$installed/lib/demo_logger/demo_tool" "demo_tool on PATH"
 rosrun demo_logger demo_tool --help >/dev/null
-executables() { find "$1/lib/demo_logger" -maxdepth 1 -type f -executable -printf '%f\n' | sort; }
+executables() {
+  find "$1/lib/demo_logger" -maxdepth 1 -type f -executable -printf '%f\n' | grep -vE '^test_|_test$' | sort
+}
 expect "$(executables "$installed")" "$(executables "$devel")" "what is installed in lib/demo_logger"
 rosrun demo_logger draw_demonstration.py --help >/dev/null
 
