@@ -296,8 +296,10 @@ void writeSidecar(const std::filesystem::path& path, const Metadata& metadata, c
 }
 
 std::filesystem::path sidecarPath(const std::filesystem::path& csv) {
-  std::filesystem::path path = csv;
-  return path.replace_extension(".json");
+  if (csv.extension() == ".part") {
+    return sidecarPath(std::filesystem::path(csv).replace_extension()) += ".part";
+  }
+  return std::filesystem::path(csv).replace_extension(".json");
 }
 
 }  // namespace demo_logger

@@ -219,7 +219,10 @@ TEST(SidecarTest, AMissingFileAndADirectoryAreNamed) {
   }
 }
 
-TEST(SidecarTest, StandsBesideItsCsv) { EXPECT_EQ(sidecarPath("a/demo_000001.csv"), "a/demo_000001.json"); }
+TEST(SidecarTest, StandsBesideItsCsv) {
+  EXPECT_EQ(sidecarPath("a/demo_000001.csv"), "a/demo_000001.json");
+  EXPECT_EQ(sidecarPath("a/demo_000001.csv.part"), "a/demo_000001.json.part");
+}
 
 }  // namespace
 }  // namespace demo_logger

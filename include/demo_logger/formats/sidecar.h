@@ -41,7 +41,7 @@ Sidecar readSidecar(const std::filesystem::path& path);
 void writeSidecar(const std::filesystem::path& path, const Metadata& metadata, const std::vector<Column>& columns,
                   bool overwrite = false);
 
-/// demo_000001.csv → demo_000001.json
+/// demo_000001.csv → demo_000001.json; demo_000001.csv.part → demo_000001.json.part
 std::filesystem::path sidecarPath(const std::filesystem::path& csv);
 
 }  // namespace demo_logger
