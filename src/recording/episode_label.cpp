@@ -47,8 +47,9 @@ void requireFinishedEpisode(const std::filesystem::path& directory, const std::s
   if (file_system.exists(finalFiles(directory, id).data)) {
     return;
   }
-  throw FileError(directory.string() + " has no finished episode " + id + ", expected a file " + id + ".csv" +
-                  (file_system.exists(partFiles(directory, id).data) ? "; it is still open as " + id + ".csv.part." : "."));
+  throw FileError(
+      directory.string() + " has no finished episode " + id + ", expected a file " + id + ".csv" +
+      (file_system.exists(partFiles(directory, id).data) ? "; it is still open as " + id + ".csv.part." : "."));
 }
 
 void setSidecarTexts(const std::filesystem::path& sidecar, const std::map<std::string, std::string>& texts) {
@@ -71,10 +72,8 @@ void labelEpisode(const std::filesystem::path& directory, const std::string& id,
     requireOutcome(label.outcome);
   }
   requireFinishedEpisode(directory, id);
-  std::map<std::string, std::string> texts = {{"outcome", label.outcome},
-                                              {"task", label.task},
-                                              {"operator", label.operator_name},
-                                              {"notes", label.notes}};
+  std::map<std::string, std::string> texts = {
+      {"outcome", label.outcome}, {"task", label.task}, {"operator", label.operator_name}, {"notes", label.notes}};
   for (auto text = texts.begin(); text != texts.end();) {
     text = text->second.empty() ? texts.erase(text) : std::next(text);
   }

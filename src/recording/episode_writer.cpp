@@ -176,8 +176,7 @@ EpisodeWriter::EpisodeWriter(const std::filesystem::path& directory, const std::
 
 EpisodeWriter::EpisodeWriter(EpisodeReservation reservation, std::vector<Column> columns, const Metadata& metadata,
                              const EpisodeWriterOptions& options)
-    : implementation_(
-          std::make_unique<Implementation>(*reservation.files_, std::move(columns), metadata, options)) {}
+    : implementation_(std::make_unique<Implementation>(*reservation.files_, std::move(columns), metadata, options)) {}
 
 EpisodeWriter::~EpisodeWriter() = default;
 
@@ -197,8 +196,6 @@ double EpisodeWriter::duration() const {
   return toSeconds(progress.last_stamp - progress.first_stamp);
 }
 
-std::filesystem::path EpisodeWriter::finish(Metadata metadata) {
-  return implementation_->finish(std::move(metadata));
-}
+std::filesystem::path EpisodeWriter::finish(Metadata metadata) { return implementation_->finish(std::move(metadata)); }
 
 }  // namespace demo_logger

@@ -14,7 +14,8 @@ std::uintmax_t freeSpace(const std::filesystem::path& directory) {
   }
   const std::int64_t bytes = operatingSystem().freeSpace(existing);
   if (bytes < 0) {
-    throw FileError(directory.string() + ": the space left cannot be told: " + errorText(static_cast<int>(bytes)) + ".");
+    throw FileError(directory.string() + ": the space left cannot be told: " + errorText(static_cast<int>(bytes)) +
+                    ".");
   }
   return static_cast<std::uintmax_t>(bytes);
 }

@@ -27,7 +27,8 @@ std::filesystem::path publish(FileSystem& file_system, const std::filesystem::pa
     data = finals.data;
     sidecar.giveReserveBack();
     // A sidecar without a word in it says less than none.
-    result = sidecar.hasText() ? file_system.rename(sidecar.file(), finals.sidecar) : file_system.remove(sidecar.file());
+    result =
+        sidecar.hasText() ? file_system.rename(sidecar.file(), finals.sidecar) : file_system.remove(sidecar.file());
     if (result == -EEXIST) {
       continue;
     }

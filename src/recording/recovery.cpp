@@ -30,7 +30,8 @@ std::set<std::string> idsOfParts(const std::filesystem::path& directory) {
   for (std::filesystem::directory_iterator entry(directory, error), end; !error && entry != end;
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (const std::optional<std::uint64_t> number = episodeNumber(name); number && entry->path().extension() == ".part") {
+    if (const std::optional<std::uint64_t> number = episodeNumber(name);
+        number && entry->path().extension() == ".part") {
       ids.insert(episodeId(*number));
     }
   }
@@ -72,9 +73,9 @@ Sidecar rememberedSidecar(const FileDescriptor& descriptor, const std::filesyste
   }
   Sidecar sidecar;
   sidecar.columns = describeColumns(rows.names);
-  sidecar.metadata.faults.push_back(
-      Fault{0, "The sidecar was lost (" + reason + "): columns follow from their names, the stamp of the start is unknown.",
-            1});
+  sidecar.metadata.faults.push_back(Fault{
+      0, "The sidecar was lost (" + reason + "): columns follow from their names, the stamp of the start is unknown.",
+      1});
   return sidecar;
 }
 

@@ -111,7 +111,8 @@ void RowWriter::writeBatch() {
 /// Returns how many rows reached the file.
 std::size_t RowWriter::appendText() {
   const std::size_t bytes = data_.append(text_);
-  auto lines = static_cast<std::size_t>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(bytes), '\n'));
+  auto lines =
+      static_cast<std::size_t>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(bytes), '\n'));
   text_.erase(0, bytes);
   if (lines > 0 && !header_written_) {
     header_written_ = true;

@@ -82,7 +82,8 @@ WholeRows findWholeRows(int descriptor, const std::string& file) {
       break;
     }
     std::size_t start = 0;
-    for (std::size_t end = buffer.find('\n', known); trusted && end != std::string::npos; end = buffer.find('\n', start)) {
+    for (std::size_t end = buffer.find('\n', known); trusted && end != std::string::npos;
+         end = buffer.find('\n', start)) {
       trusted = accept(std::string_view(buffer).substr(start, end - start), whole);
       if (trusted) {
         whole.bytes += static_cast<off_t>(end + 1 - start);

@@ -17,8 +17,8 @@ struct EpisodeLabel {
 void requireChannel(const std::string& channel);  // teleoperation, kinesthetic, vr, unknown
 void requireOutcome(const std::string& outcome);  // success, failure, unknown
 
-/// Rewrites the sidecar of the finished episode `id`, whole or not at all; everything else that stands in it stays, also
-/// keys that this software does not know. Throws ConfigurationError, FileError.
+/// Rewrites the sidecar of the finished episode `id`, whole or not at all; everything else that stands in it stays,
+/// also keys that this software does not know. Throws ConfigurationError, FileError.
 void labelEpisode(const std::filesystem::path& directory, const std::string& id, const EpisodeLabel& label);
 
 }  // namespace demo_logger

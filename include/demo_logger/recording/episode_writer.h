@@ -17,17 +17,17 @@ namespace demo_logger {
 
 /// How an EpisodeWriter goes about it. The defaults are what the file format promises (doc/file_format.md).
 struct EpisodeWriterOptions {
-  double flush_interval = 0.04;              // [s] at most until a row is in the kernel, where a SIGKILL cannot reach it
-  double sync_interval = 1.0;                // [s] between fdatasync, and between updates of the sidecar
-  double retry_interval = 1.0;               // [s] between attempts on a full disk
+  double flush_interval = 0.04;  // [s] at most until a row is in the kernel, where a SIGKILL cannot reach it
+  double sync_interval = 1.0;    // [s] between fdatasync, and between updates of the sidecar
+  double retry_interval = 1.0;   // [s] between attempts on a full disk
   std::size_t queue_bytes = 64 * 1024 * 1024;  // rows that wait in memory for the disk; more are counted, not written
 };
 
 /// Writes one episode to disk as it happens, from a thread of its own:
 ///   demo_000001.csv.part and demo_000001.json.part, the next free number in `directory`, under flock. Rows reach the
 ///   kernel at least every 50 ms and the disk each second; finish() renames the data first, the sidecar last.
-/// Whatever happens, every complete row stays readable. On a full disk rows wait in memory, as many as the bounded queue
-/// holds, and are written when there is room again; those beyond are counted as not written.
+/// Whatever happens, every complete row stays readable. On a full disk rows wait in memory, as many as the bounded
+/// queue holds, and are written when there is room again; those beyond are counted as not written.
 class EpisodeWriter {
  public:
   /// Creates the directory where needed and both part files. Throws FileError.
