@@ -10,6 +10,7 @@ elseif(NOT DEMO_LOGGER_SANITIZE STREQUAL "none")
   message(FATAL_ERROR "DEMO_LOGGER_SANITIZE is \"${DEMO_LOGGER_SANITIZE}\", expected none, address or thread")
 endif()
 if(sanitizers)
-  add_compile_options(${sanitizers} -fno-omit-frame-pointer)
+  # Lightly optimised, as instrumented code compiles slowly; with the assertions of ours and of Eigen.
+  add_compile_options(${sanitizers} -fno-omit-frame-pointer -O1 -g1 -UNDEBUG)
   add_link_options(${sanitizers})
 endif()
