@@ -57,6 +57,6 @@ recorded=$(comm -13 <(echo "$before") <(find "$demos" -maxdepth 1 -name 'demo_*.
 demo_tool info "$recorded"
 status=0
 demo_tool check "$recorded" || status=$?
-picture=$(rosrun demo_logger draw_demonstration.py "$recorded")
+picture=$("$project/scripts/draw_demonstration.py" "$recorded")
 echo "Files: $recorded, ${recorded%.csv}.json, $picture"
 exit $status

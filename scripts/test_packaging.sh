@@ -24,7 +24,7 @@ trap closeRunFolder EXIT
 trap 'exit 130' INT TERM
 workspace=$run_folder/workspace
 mkdir -p "$workspace/src/demo_logger"
-(cd "$project" && tar --create --exclude=./build --exclude=./devel --exclude=./install --exclude=./demos \
+(cd "$project" && tar --create --exclude=./build --exclude=./devel --exclude=./demos \
   --exclude=./.git .) | tar --extract --directory "$workspace/src/demo_logger"
 
 cd "$workspace"

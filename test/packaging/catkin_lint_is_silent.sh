@@ -9,7 +9,7 @@ export PATH=/usr/bin:/bin
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
 mkdir "$copy/demo_logger"
-tar --create --directory "$source" --exclude=./build --exclude=./devel --exclude=./install --exclude=./demos \
+tar --create --directory "$source" --exclude=./build --exclude=./devel --exclude=./demos \
   --exclude=./.git . | tar --extract --directory "$copy/demo_logger"
 
 # Left out: writing ${PROJECT_NAME} for our own name, CMake's own variables, scripts and measurements for those who
