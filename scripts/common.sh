@@ -59,14 +59,16 @@ defaultJobs() {
   [ "$jobs" -ge 1 ] || jobs=1
 }
 
-# buildTree FOLDER [CMAKE_ARGUMENT…]: configures and builds; on failure shows the end of the log and stops the script.
+# buildTree FOLDER TARGET [CMAKE_ARGUMENT…]: configures and builds; on failure shows the errors and the end of the log
+# and stops the script.
 buildTree() {
-  local tree=$1
-  shift
+  local tree=$1 target=$2
+  shift 2
   local log=$tree/build.log
   mkdir -p "$tree"
   echo "Building in ${tree#"$project/"} with $jobs jobs (some minutes the first time; the log is ${log#"$project/"})"
-  if ! { cmake -S "$project" -B "$tree" "$@" && cmake --build "$tree" --parallel "$jobs"; } >"$log" 2>&1 </dev/null; then
+  if ! { cmake -S "$project" -B "$tree" "$@" && cmake --build "$tree" --target "$target" --parallel "$jobs"; } \
+    >"$log" 2>&1 </dev/null; then
     grep -nE '(error|Error [0-9]+|CMake Error|\*\*\*)' "$log" | head -n 20 >&2 || true
     tail -n 40 "$log" >&2
     fail "the build failed; the whole log is $log"

@@ -31,7 +31,7 @@ done
 
 "$project/scripts/install_dependencies.sh" build run
 defaultJobs
-buildTree "$project/build" -DCMAKE_BUILD_TYPE=Release
+buildTree "$project/build" demo_logger_programs -DCMAKE_BUILD_TYPE=Release
 set +u
 # shellcheck disable=SC1091
 source "$project/devel/setup.bash"

@@ -34,7 +34,7 @@ test/packaging/catkin_lint_is_silent.sh .
 find . -path ./build -prune -o -path ./devel -prune -o -name '*.sh' -print0 | xargs -0 shellcheck --external-sources \
   --source-path=SCRIPTDIR
 
-buildTree "$project/build"
+buildTree "$project/build" all
 if [ ${#files[@]} -eq 0 ]; then
   mapfile -t files < <(sed -n 's/^ *"file": "\(.*\.cpp\)",*$/\1/p' build/compile_commands.json |
     grep -E "^$project/(src|test)/" | sort -u)

@@ -61,7 +61,7 @@ if [ "$sanitizer" != none ]; then
   # The sanitizers' shadow memory collides with kernels that randomise addresses over more bits than they expect.
   runner=(setarch "$(uname -m)" --addr-no-randomize)
 fi
-buildTree "$tree" "${configuration[@]}"
+buildTree "$tree" all "${configuration[@]}"
 # Instrumented code makes the compiler suspect the standard library, so its warnings count without sanitizers only.
 if [ "$sanitizer" = none ] && grep -E 'warning: ' "$tree/build.log" >&2; then
   fail "the compiler warned (above); the sources are meant to be free of warnings"
