@@ -1,10 +1,13 @@
 #include "demo_logger/formats/column_conventions.h"
 
 #include <array>
+#include <set>
 #include <string_view>
 
 namespace demo_logger {
 namespace {
+
+constexpr std::string_view kAge = "_age";
 
 struct Convention {
   std::string_view word;
@@ -23,18 +26,18 @@ constexpr std::array<Convention, 6> kJointPrefixes = {{
     {"tau_", "N m", Role::auxiliary, Interpolation::linear},
 }};
 
-// Of streams. A stream is in force until replaced, unless it is a pose.
-constexpr std::array<Convention, 20> kStreamSuffixes = {{
-    {"_age", "s", Role::auxiliary, Interpolation::none},    {"_vx", "m/s", Role::auxiliary, Interpolation::hold},
-    {"_vy", "m/s", Role::auxiliary, Interpolation::hold},   {"_vz", "m/s", Role::auxiliary, Interpolation::hold},
-    {"_wx", "rad/s", Role::auxiliary, Interpolation::hold}, {"_wy", "rad/s", Role::auxiliary, Interpolation::hold},
-    {"_wz", "rad/s", Role::auxiliary, Interpolation::hold}, {"_fx", "N", Role::auxiliary, Interpolation::hold},
-    {"_fy", "N", Role::auxiliary, Interpolation::hold},     {"_fz", "N", Role::auxiliary, Interpolation::hold},
-    {"_tx", "N m", Role::auxiliary, Interpolation::hold},   {"_ty", "N m", Role::auxiliary, Interpolation::hold},
-    {"_tz", "N m", Role::auxiliary, Interpolation::hold},   {"_x", "m", Role::auxiliary, Interpolation::linear},
-    {"_y", "m", Role::auxiliary, Interpolation::linear},    {"_z", "m", Role::auxiliary, Interpolation::linear},
-    {"_rx", "rad", Role::auxiliary, Interpolation::linear}, {"_ry", "rad", Role::auxiliary, Interpolation::linear},
-    {"_rz", "rad", Role::auxiliary, Interpolation::linear}, {"_value", "", Role::auxiliary, Interpolation::hold},
+// What the last word of a name says of its unit.
+constexpr std::array<Convention, 19> kLastWords = {{
+    {"_vx", "m/s", Role::control, Interpolation::linear},   {"_vy", "m/s", Role::control, Interpolation::linear},
+    {"_vz", "m/s", Role::control, Interpolation::linear},   {"_wx", "rad/s", Role::control, Interpolation::linear},
+    {"_wy", "rad/s", Role::control, Interpolation::linear}, {"_wz", "rad/s", Role::control, Interpolation::linear},
+    {"_fx", "N", Role::auxiliary, Interpolation::linear},   {"_fy", "N", Role::auxiliary, Interpolation::linear},
+    {"_fz", "N", Role::auxiliary, Interpolation::linear},   {"_tx", "N m", Role::auxiliary, Interpolation::linear},
+    {"_ty", "N m", Role::auxiliary, Interpolation::linear}, {"_tz", "N m", Role::auxiliary, Interpolation::linear},
+    {"_x", "m", Role::control, Interpolation::linear},      {"_y", "m", Role::control, Interpolation::linear},
+    {"_z", "m", Role::control, Interpolation::linear},      {"_rx", "rad", Role::control, Interpolation::linear},
+    {"_ry", "rad", Role::control, Interpolation::linear},   {"_rz", "rad", Role::control, Interpolation::linear},
+    {"_value", "", Role::auxiliary, Interpolation::hold},
 }};
 
 bool startsWith(std::string_view name, std::string_view prefix) { return name.substr(0, prefix.size()) == prefix; }
@@ -54,32 +57,44 @@ bool isJoyComponent(std::string_view name) {
   return false;
 }
 
-Column describe(const std::string& name) {
-  const auto asStated = [&name](const Convention& convention) {
-    return Column{name, convention.unit, convention.role, convention.interpolation, ""};
-  };
-  if (name == "time" || name == "receipt_delay") {
-    return {name, "s", Role::auxiliary, Interpolation::none, ""};
+// A stream `hand` has an age, `hand_age`; its columns are a command in force until replaced, unless they are
+// measurements or buttons.
+bool belongsToStream(std::string_view name, const std::set<std::string>& streams) {
+  for (std::size_t end = name.find('_'); end != std::string_view::npos; end = name.find('_', end + 1)) {
+    if (streams.count(std::string(name.substr(0, end))) > 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Column describe(const std::string& name, const std::set<std::string>& streams) {
+  Column column{name, "", Role::auxiliary, Interpolation::none, ""};
+  if (name == "time" || name == "receipt_delay" || endsWith(name, kAge)) {
+    column.unit = "s";
+    return column;
   }
   for (const Convention& convention : kJointPrefixes) {
     if (startsWith(name, convention.word)) {
-      return asStated(convention);
+      return {name, convention.unit, convention.role, convention.interpolation, ""};
     }
   }
-  Column column{name, "", Role::auxiliary, Interpolation::none, ""};
-  for (const Convention& convention : kStreamSuffixes) {
+  const bool is_stream = belongsToStream(name, streams);
+  Role stream_role = isJoyComponent(name) ? Role::auxiliary : Role::control;
+  for (const Convention& convention : kLastWords) {
     if (endsWith(name, convention.word)) {
-      column = asStated(convention);
+      column.unit = convention.unit;
+      column.interpolation = convention.interpolation;
+      stream_role = convention.role;
       break;
     }
   }
-  if (isJoyComponent(name)) {
-    column.interpolation = Interpolation::hold;
-  }
   if (startsWith(name, "ee_")) {
     column.role = Role::state;
-  } else if (startsWith(name, "u_") && name != "u_age") {
-    column.role = Role::control;
+  } else if (is_stream || startsWith(name, "u_")) {
+    column.role = startsWith(name, "u_") ? Role::control : stream_role;
+    column.interpolation = Interpolation::hold;
+  } else if (isJoyComponent(name)) {
     column.interpolation = Interpolation::hold;
   }
   return column;
@@ -96,16 +111,23 @@ bool isOrientation(const std::vector<std::string>& names, std::size_t first) {
 }  // namespace
 
 std::vector<Column> describeColumns(const std::vector<std::string>& names) {
+  std::set<std::string> streams;
+  for (const std::string& name : names) {
+    if (endsWith(name, kAge)) {
+      streams.insert(name.substr(0, name.size() - kAge.size()));
+    }
+  }
   std::vector<Column> columns;
   columns.reserve(names.size());
   for (const std::string& name : names) {
-    columns.push_back(describe(name));
+    columns.push_back(describe(name, streams));
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (isOrientation(names, i)) {
       for (std::size_t k = i; k < i + 4; ++k) {
-        // A commanded orientation stays in force until replaced, like any other command.
-        columns[k].interpolation = columns[k].role == Role::control ? Interpolation::hold : Interpolation::slerp;
+        if (columns[k].interpolation != Interpolation::hold) {  // a command's orientation stays in force as well
+          columns[k].interpolation = Interpolation::slerp;
+        }
       }
     }
   }

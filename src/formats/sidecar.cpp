@@ -117,6 +117,12 @@ Fault parseFault(const JsonFields& fields) {
   }
   fields.read("what", fault.what);
   fields.read("count", fault.count);
+  std::string severity = "warning";
+  fields.read("severity", severity);
+  if (severity != "warning" && severity != "error") {
+    fields.refuse("severity", severity, "warning or error");
+  }
+  fault.severity = severity == "error" ? Severity::error : Severity::warning;
   return fault;
 }
 

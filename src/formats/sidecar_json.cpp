@@ -69,7 +69,10 @@ Json streamToJson(const StreamMetadata& stream) {
 }
 
 Json faultToJson(const Fault& fault) {
-  return {{"stamp", stampToJson(fault.stamp)}, {"what", fault.what}, {"count", fault.count}};
+  return {{"stamp", stampToJson(fault.stamp)},
+          {"what", fault.what},
+          {"count", fault.count},
+          {"severity", fault.severity == Severity::error ? "error" : "warning"}};
 }
 
 template <typename Item, typename ToJson>

@@ -38,14 +38,24 @@ TEST(ColumnConventionsTest, TheDefaultCommandIsAControlInForceUntilReplaced) {
   expectColumn(columns[3], "s", Role::auxiliary, Interpolation::none);
 }
 
-TEST(ColumnConventionsTest, StreamsSayTheirUnitsByTheirLastWord) {
-  const auto columns = describeColumns({"hand_fx", "hand_tz", "grip_value", "pad_axis0", "pad_button11", "pad_age"});
-  expectColumn(columns[0], "N", Role::auxiliary, Interpolation::hold);
-  expectColumn(columns[1], "N m", Role::auxiliary, Interpolation::hold);
+TEST(ColumnConventionsTest, ColumnsBesideAnAgeAreAStreamInForceUntilReplaced) {
+  const auto columns = describeColumns({"hand_x", "hand_age", "pad_axis0", "pad_button11", "pad_age", "target_elbow",
+                                        "target_age", "wrist_ft_fx", "wrist_ft_tz", "wrist_ft_age"});
+  expectColumn(columns[0], "m", Role::control, Interpolation::hold);
+  expectColumn(columns[1], "s", Role::auxiliary, Interpolation::none);
   expectColumn(columns[2], "", Role::auxiliary, Interpolation::hold);
   expectColumn(columns[3], "", Role::auxiliary, Interpolation::hold);
-  expectColumn(columns[4], "", Role::auxiliary, Interpolation::hold);
-  expectColumn(columns[5], "s", Role::auxiliary, Interpolation::none);
+  expectColumn(columns[5], "", Role::control, Interpolation::hold);
+  expectColumn(columns[7], "N", Role::auxiliary, Interpolation::hold);
+  expectColumn(columns[8], "N m", Role::auxiliary, Interpolation::hold);
+}
+
+TEST(ColumnConventionsTest, WithoutAnAgeAPoseIsAMeasurement) {
+  const auto columns = describeColumns({"cup_x", "cup_qx", "cup_qy", "cup_qz", "cup_qw", "cup_vx"});
+  expectColumn(columns[0], "m", Role::auxiliary, Interpolation::linear);
+  expectColumn(columns[1], "", Role::auxiliary, Interpolation::slerp);
+  expectColumn(columns[4], "", Role::auxiliary, Interpolation::slerp);
+  expectColumn(columns[5], "m/s", Role::auxiliary, Interpolation::linear);
 }
 
 TEST(ColumnConventionsTest, AQuaternionNeedsItsFourComponentsInARow) {

@@ -10,6 +10,7 @@ using demo_logger::Column;
 using demo_logger::Interpolation;
 using demo_logger::Metadata;
 using demo_logger::Role;
+using demo_logger::Severity;
 using demo_logger::StreamMetadata;
 using demo_logger::TeleopMapMetadata;
 
@@ -39,7 +40,7 @@ Metadata makeFullMetadata() {
   stream.receipt_delay = {0.001, std::numeric_limits<double>::quiet_NaN(), 0.03};
   metadata.streams = {stream, StreamMetadata()};
   metadata.counters = {{"late_rows", 2}};
-  metadata.faults = {{1'600'000'001'000'000'000, "joint states: frame_id changed.", 4}};
+  metadata.faults = {{1'600'000'001'000'000'000, "joint states: frame_id changed.", 4, Severity::error}};
   metadata.parameters = {{"max_wait", 0.1},
                          {"autostart", true},
                          {"joints", std::vector<std::string>{"a", "b"}},

@@ -45,7 +45,7 @@ Sidecar makeSidecar() {
   stream.receipt_delay = {0.001, 0.002, 0.03};
   metadata.streams = {stream};
   metadata.counters = {{"late_rows", 2}, {"rows", 18'446'744'073'709'551'615U}};
-  metadata.faults = {{1'600'000'001'000'000'000, "joint states: frame_id changed.", 4}};
+  metadata.faults = {{1'600'000'001'000'000'000, "joint states: frame_id changed.", 4, Severity::error}};
   metadata.parameters = {{"max_wait", 0.1},
                          {"autostart", true},
                          {"joints", std::vector<std::string>{"a", "b"}},
@@ -113,6 +113,7 @@ TEST(SidecarTest, TheTextHoldsEveryField) {
   EXPECT_EQ(json["streams"][0]["stamped"], false);
   EXPECT_EQ(json["counters"]["late_rows"], 2);
   EXPECT_EQ(json["faults"][0]["count"], 4);
+  EXPECT_EQ(json["faults"][0]["severity"], "error");
   EXPECT_EQ(json["parameters"]["offset"], Json({1.0, 2.5}));
   EXPECT_EQ(json["original_names"]["q_a_b"], "q_a/b");
   EXPECT_EQ(json["provenance"]["steps"][0], "resample --rate 50");

@@ -36,6 +36,7 @@ WRONG = [
     (["streams", 0, "align"], "previous"),
     (["counters", "late_rows"], 0.5),
     (["faults", 0, "what"], None),
+    (["faults", 0, "severity"], "grave"),
     (["parameters", "joints"], {"a": 1}),
     (["provenance", "steps"], "resample"),
 ]

@@ -65,11 +65,15 @@ struct StreamMetadata {
   DelaySummary receipt_delay;
 };
 
+/// An error makes columns useless until someone acts; a warning does not.
+enum class Severity { warning, error };
+
 /// Something that went wrong and was not hidden.
 struct Fault {
   Nanoseconds stamp = 0;  // when it was first seen, ROS time
   std::string what;       // one sentence
   std::uint64_t count = 1;
+  Severity severity = Severity::warning;
 };
 
 struct Provenance {
