@@ -21,12 +21,16 @@ struct StreamConfiguration {
   std::string topic;
   std::optional<StreamType> type;  // fixes the columns before the first message, where the type can
   Alignment alignment = Alignment::hold;
-  double latency = 0.0;   // [s] subtracted from every stamp; may be negative
-  bool in_order = false;  // stamps promised to increase strictly: rows may be released before max_wait
+  double latency = 0.0;  // [s] subtracted from every stamp; may be negative
+  /// Stamps promised to increase strictly: what breaks the promise is dropped and counted. When every stream promises
+  /// it, a row is released as soon as each has sent what decides it; joint states that arrive out of order are then
+  /// late.
+  bool in_order = false;
 };
 
 struct SynchroniserConfiguration {
-  std::vector<std::string> joints;  // empty: those of the first valid message
+  std::vector<std::string> joints;            // empty: those of the first valid message
+  std::vector<std::string> prismatic_joints;  // those whose columns are in m, m/s and N
   std::vector<StreamConfiguration> streams;
   double max_wait = 0.1;              // [s] a row waits after its receipt for stragglers
   double max_gap = 0.5;               // [s] `linear` does not bridge more
@@ -37,7 +41,7 @@ struct SynchroniserConfiguration {
 
 /// Throws ConfigurationError naming the field, the value with its unit, and what was expected: a name that is empty,
 /// not portable or given twice, a topic that is empty, a wait or gap that is negative or not finite, |latency| above 10
-/// s, joy with `linear`, joints given twice.
+/// s, joy with `linear`, a joint that is empty or given twice, merge_joint_states without joints.
 void validate(const SynchroniserConfiguration& configuration);
 
 }  // namespace demo_logger
