@@ -191,6 +191,8 @@ std::optional<std::uint64_t> EpisodeWriter::bytesFree() const { return implement
 std::optional<std::string> EpisodeWriter::fault() const { return implementation_->faults().present(); }
 std::vector<Fault> EpisodeWriter::faults() const { return implementation_->faults().all(); }
 
+Nanoseconds EpisodeWriter::lastStamp() const { return implementation_->progress().last_stamp; }
+
 double EpisodeWriter::duration() const {
   const WritingProgress progress = implementation_->progress();
   return toSeconds(progress.last_stamp - progress.first_stamp);

@@ -48,6 +48,7 @@ class EpisodeWriter {
 
   std::uint64_t rows() const;  // given to write()
   double duration() const;     // [s] from the first of them to the last
+  Nanoseconds lastStamp() const;
   std::uint64_t rowsNotWritten() const;
   std::optional<std::string> fault() const;  // "disk full: …", nothing while all is well
   /// Every fault so far, the present one included; each kind once, stamped with the row that it was first met at.
