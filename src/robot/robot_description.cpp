@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -41,13 +42,17 @@ std::vector<PlacedLink> linksMovingWith(const urdf::LinkConstSharedPtr& first, c
 }
 
 /// The lumped body of one moving joint; the first impossibility or absence found goes into `fault` if that is empty.
-BodyInertia lumpedBody(const std::vector<PlacedLink>& links, const std::string& joint, std::string& fault) {
+BodyInertia lumpedBody(const std::vector<PlacedLink>& links, const std::string& joint,
+                       const std::map<std::string, std::string>& unread_inertia, std::string& fault) {
   BodyInertia body;
   for (const auto& [link, X_body_link] : links) {
     const BodyInertia own = inertiaOf(*link);
     const std::string impossible = impossibility(own);
     if (own.mass < 0.0) throw ModelError("link '" + link->name + "' has " + impossible);
     if (!impossible.empty() && fault.empty()) fault = "link '" + link->name + "' has " + impossible;
+    if (const auto unread = unread_inertia.find(link->name); unread != unread_inertia.end() && fault.empty()) {
+      fault = "link '" + link->name + "' has an <inertial> element that cannot be read: " + unread->second;
+    }
     body = lumped(body, movedTo(X_body_link, own));
   }
   if (body.mass == 0.0 && fault.empty()) {
@@ -114,7 +119,8 @@ Eigen::Matrix3d rotationFromRootToBase(const urdf::ModelInterface& model, const 
   return X_root_base.linear().transpose();
 }
 
-RobotDescription describeTree(const urdf::ModelInterface& model, const DescriptionOptions& options) {
+RobotDescription describeTree(const ParsedUrdf& parsed, const DescriptionOptions& options) {
+  const urdf::ModelInterface& model = *parsed.model;
   const auto base = options.base.empty() ? model.getRoot() : findLink(model, options.base);
   const auto tip = options.tip.empty() ? onlyLeaf(model) : findLink(model, options.tip);
   const auto path = jointsBetween(model, base, tip);
@@ -143,7 +149,7 @@ RobotDescription describeTree(const urdf::ModelInterface& model, const Descripti
     const std::size_t next = description.joints.size() + 1;
     arm_joint.body = lumpedBody(linksMovingWith(findLink(model, arm_joint.link),
                                                 next < moving.size() ? moving[next] : std::string(), model, locked),
-                                arm_joint.name, description.inertia_fault);
+                                arm_joint.name, parsed.unread_inertia, description.inertia_fault);
     description.joints.push_back(std::move(arm_joint));
   }
   description.X_lastlink_tip = X_body_link;
@@ -155,7 +161,7 @@ RobotDescription describeTree(const urdf::ModelInterface& model, const Descripti
 RobotDescription describe(const std::string& where, const std::string& urdf_xml, const DescriptionOptions& options) {
   try {
     if (!std::isfinite(options.gravity)) throw ModelError("gravity must be a finite number of m/s²");
-    RobotDescription description = describeTree(*parseUrdf(urdf_xml), options);
+    RobotDescription description = describeTree(parseUrdf(urdf_xml), options);
     description.urdf_sha256 = sha256(urdf_xml);
     if (!description.has_inertia) description.inertia_fault = where + ": " + description.inertia_fault;
     return description;

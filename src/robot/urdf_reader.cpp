@@ -38,6 +38,17 @@ class CaughtConsole : public console_bridge::OutputHandler {
     return text;
   }
 
+  /// urdfdom gives the reason first, then the link.
+  std::map<std::string, std::string> unreadInertia() const {
+    const std::string begin = "Could not parse inertial element for Link [";
+    std::map<std::string, std::string> reasons;
+    for (std::size_t i = 1; i < errors_.size(); ++i) {
+      if (errors_[i].compare(0, begin.size(), begin) != 0) continue;
+      reasons[errors_[i].substr(begin.size(), errors_[i].size() - begin.size() - 1)] = errors_[i - 1];
+    }
+    return reasons;
+  }
+
  private:
   static std::mutex& mutex() {
     static std::mutex instance;
@@ -71,26 +82,42 @@ void refuseWhatIsNoTree(const urdf::ModelInterface& model) {
   }
 }
 
+/// A xacro element outside comments: urdfdom would skip it, and with it half the robot, without a word.
+bool isXacro(const std::string& xml) {
+  const std::string begin = "<!--";
+  const std::string end = "-->";
+  std::size_t position = 0;
+  while (true) {
+    const std::size_t comment = xml.find(begin, position);
+    const std::size_t element = xml.find("<xacro:", position);
+    if (element < comment) return true;
+    if (comment == std::string::npos) return false;
+    position = xml.find(end, comment + begin.size());
+    if (position == std::string::npos) return false;
+  }
+}
+
 }  // namespace
 
-urdf::ModelInterfaceSharedPtr parseUrdf(const std::string& xml) {
+ParsedUrdf parseUrdf(const std::string& xml) {
   if (xml.find_first_not_of(" \t\r\n") == std::string::npos) throw ModelError("the URDF text is empty");
-  if (xml.find("<xacro:") != std::string::npos) {
+  if (isXacro(xml)) {
     throw ModelError("this is a xacro file, not a URDF; expand it first: xacro FILE > robot.urdf");
   }
-  urdf::ModelInterfaceSharedPtr model;
+  ParsedUrdf parsed;
   {
     const CaughtConsole console;
     std::string thrown;
     try {
-      model = urdf::parseURDF(xml);
+      parsed.model = urdf::parseURDF(xml);
     } catch (const std::exception& error) {  // urdfdom lets some conversions throw
       thrown = error.what();
     }
-    if (!model) throw ModelError("not a valid URDF: " + (thrown.empty() ? console.summary() : thrown));
+    if (!parsed.model) throw ModelError("not a valid URDF: " + (thrown.empty() ? console.summary() : thrown));
+    parsed.unread_inertia = console.unreadInertia();
   }
-  refuseWhatIsNoTree(*model);
-  return model;
+  refuseWhatIsNoTree(*parsed.model);
+  return parsed;
 }
 
 }  // namespace demo_logger

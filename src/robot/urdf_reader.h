@@ -2,12 +2,19 @@
 
 #include <urdf_world/types.h>
 
+#include <map>
 #include <string>
 
 namespace demo_logger {
 
+struct ParsedUrdf {
+  urdf::ModelInterfaceSharedPtr model;
+  /// Why the <inertial> of a link could not be read, by link: urdfdom goes on as if the link had none, or half of one.
+  std::map<std::string, std::string> unread_inertia;
+};
+
 /// Parses URDF text with urdfdom, whose console messages are caught and become part of the error. Throws ModelError:
 /// empty text, an unexpanded xacro file, malformed XML, anything urdfdom refuses, links that hang in a loop.
-urdf::ModelInterfaceSharedPtr parseUrdf(const std::string& xml);
+ParsedUrdf parseUrdf(const std::string& xml);
 
 }  // namespace demo_logger

@@ -1,0 +1,244 @@
+// Every fault of a URDF that a user can meet, and the one sentence that he reads.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "demo_logger/robot/robot_description.h"
+#include "demo_logger/robot/robot_model.h"
+#include "demo_logger/trajectory/error.h"
+#include "test/robot/own_arms.h"
+
+namespace demo_logger {
+namespace {
+
+const std::string kInertia = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>";
+const std::string kLimit = "<limit lower='-1' upper='1' velocity='1' effort='1'/>";
+
+std::string sentenceOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string faultOf(const std::string& urdf, const std::string& base = "", const std::string& tip = "") {
+  DescriptionOptions options;
+  options.base = base;
+  options.tip = tip;
+  return sentenceOf([&] { describeRobot(urdf, options); });
+}
+
+/// base - j1 - hand, with what a test wants to have in joint and hand, and beside them.
+std::string simpleArm(const std::string& type, const std::string& in_joint, const std::string& in_hand = "",
+                      const std::string& beside = "") {
+  return "<robot name='r'><link name='base'/><link name='hand'>" + in_hand + "</link><joint name='j1' type='" + type +
+         "'><parent link='base'/><child link='hand'/>" + in_joint + "</joint>" + beside + "</robot>";
+}
+
+TEST(UrdfFaultsTest, AFileThatIsNotThereOrNotAFile) {
+  EXPECT_EQ(sentenceOf([] { describeRobotFile("/nonexistent/arm.urdf", {}); }),
+            "/nonexistent/arm.urdf: no such file, expected a robot description (URDF)");
+  const std::string folder = std::filesystem::temp_directory_path();
+  EXPECT_EQ(sentenceOf([&] { describeRobotFile(folder, {}); }),
+            folder + ": cannot be read, expected a robot description (URDF)");
+  EXPECT_THROW(describeRobotFile("/nonexistent/arm.urdf", {}), FileError);
+}
+
+TEST(UrdfFaultsTest, TextThatIsNoUrdf) {
+  EXPECT_EQ(faultOf(" \n"), "robot description: the URDF text is empty");
+  EXPECT_EQ(faultOf("<robot name='r'><xacro:arm/></robot>"),
+            "robot description: this is a xacro file, not a URDF; expand it first: xacro FILE > robot.urdf");
+  EXPECT_EQ(faultOf("<robot name='r'><link name='a'></robot>"),
+            "robot description: not a valid URDF: Error reading end tag.");
+  EXPECT_EQ(faultOf("<launch/>"),
+            "robot description: not a valid URDF: Could not find the 'robot' element in the xml file");
+  EXPECT_EQ(faultOf("q1,q2\n0,1\n"), "robot description: not a valid URDF: Error document empty.");
+  EXPECT_EQ(faultOf("<robot name='r'/>"), "robot description: not a valid URDF: No link elements found in urdf file");
+}
+
+TEST(UrdfFaultsTest, AXacroWordInACommentIsNoXacroFile) {
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit + "<!-- <xacro:arm/> -->")), "no error");
+}
+
+TEST(UrdfFaultsTest, NumbersThatAreNone) {
+  EXPECT_EQ(faultOf(simpleArm("revolute", "<limit lower='-1,5' upper='1' velocity='1' effort='1'/>")),
+            "robot description: not a valid URDF: lower value (-1,5) is not a valid float; Could not parse limit "
+            "element for joint [j1]");
+  EXPECT_EQ(faultOf(simpleArm("revolute", "<limit lower='nan' upper='1' velocity='1' effort='1'/>")),
+            "robot description: not a valid URDF: lower value (nan) is not a valid float; Could not parse limit "
+            "element for joint [j1]");
+}
+
+TEST(UrdfFaultsTest, ALinkThatIsNotThereOffersTheNearestNames) {
+  DescriptionOptions options;
+  options.tip = "tool_tipp";
+  EXPECT_EQ(sentenceOf([&] { describeRobotFile(ownUrdf("two_link"), options); }),
+            ownUrdf("two_link") +
+                ": no link 'tool_tipp' in robot 'two_link' of 4 links; the nearest names are 'tool_tip', 'base_link', "
+                "'link_1'");
+}
+
+TEST(UrdfFaultsTest, ATipThatMustBeNamed) {
+  EXPECT_EQ(faultOf("<robot name='r'><link name='base'/><link name='left'/><link name='right'/>"
+                    "<joint name='a' type='fixed'><parent link='base'/><child link='left'/></joint>"
+                    "<joint name='b' type='fixed'><parent link='base'/><child link='right'/></joint></robot>"),
+            "robot description: robot 'r' ends in several links, so the tip must be named; choose among 'left', "
+            "'right'");
+}
+
+TEST(UrdfFaultsTest, ATipThatIsNotBelowTheBase) {
+  const std::string urdf = simpleArm("revolute", kLimit);
+  EXPECT_EQ(faultOf(urdf, "hand", "base"),
+            "robot description: tip 'base' is not below base 'hand': it is the root of robot 'r'");
+  const std::string two_arms =
+      simpleArm("revolute", kLimit, "",
+                "<link name='other'/><joint name='j2' type='revolute'><parent link='base'/><child link='other'/>" +
+                    kLimit + "</joint>");
+  EXPECT_EQ(faultOf(two_arms, "other", "hand"),
+            "robot description: tip 'hand' is not below base 'other'; links above the tip: 'base'");
+}
+
+TEST(UrdfFaultsTest, NoMovingJoint) {
+  EXPECT_EQ(faultOf(simpleArm("fixed", "")), "robot description: no moving joint between base 'base' and tip 'hand'");
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit), "hand", "hand"),
+            "robot description: no moving joint between base 'hand' and tip 'hand'");
+}
+
+TEST(UrdfFaultsTest, FloatingAndPlanarJoints) {
+  EXPECT_EQ(faultOf(simpleArm("floating", "")),
+            "robot description: joint 'j1' is floating; an arm and what hangs from it may have revolute, continuous, "
+            "prismatic and fixed joints only");
+  EXPECT_EQ(faultOf(simpleArm("planar", "")),
+            "robot description: joint 'j1' is planar; an arm and what hangs from it may have revolute, continuous, "
+            "prismatic and fixed joints only");
+  const std::string hanging = simpleArm(
+      "revolute", kLimit, "",
+      "<link name='ball'/><joint name='loose' type='floating'><parent link='hand'/><child link='ball'/></joint>");
+  EXPECT_EQ(faultOf(hanging, "base", "hand"),
+            "robot description: joint 'loose' is floating; an arm and what hangs from it may have revolute, "
+            "continuous, prismatic and fixed joints only");
+}
+
+TEST(UrdfFaultsTest, JointsOfAnotherArmAreNotJudged) {
+  const std::string beside = simpleArm(
+      "revolute", kLimit, "",
+      "<link name='ball'/><joint name='loose' type='floating'><parent link='base'/><child link='ball'/></joint>");
+  EXPECT_EQ(faultOf(beside, "base", "hand"), "no error");
+}
+
+TEST(UrdfFaultsTest, AZeroAxis) {
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit + "<axis xyz='0 0 0'/>")),
+            "robot description: joint 'j1' has the axis 0 0 0, expected a direction such as 0 0 1");
+}
+
+TEST(UrdfFaultsTest, LimitsThatAreSwappedMissingNegativeOrEmpty) {
+  EXPECT_EQ(faultOf(simpleArm("revolute", "<limit lower='2' upper='-1.5' velocity='1' effort='1'/>")),
+            "robot description: joint 'j1' has its limits swapped: lower 2, upper -1.5 rad");
+  EXPECT_EQ(faultOf(simpleArm("prismatic", "<limit lower='2' upper='-1.5' velocity='1' effort='1'/>")),
+            "robot description: joint 'j1' has its limits swapped: lower 2, upper -1.5 m");
+  EXPECT_EQ(faultOf(simpleArm("revolute", "")),
+            "robot description: not a valid URDF: Joint [j1] is of type REVOLUTE but it does not specify limits");
+  EXPECT_EQ(
+      faultOf(simpleArm("revolute", "<limit lower='-1' upper='1' effort='1'/>")),
+      "robot description: not a valid URDF: joint limit: no velocity; Could not parse limit element for joint [j1]");
+  EXPECT_EQ(faultOf(simpleArm("revolute", "<limit lower='-1' upper='1' velocity='-1' effort='1'/>")),
+            "robot description: joint 'j1' has a negative velocity or effort limit");
+  EXPECT_EQ(faultOf(simpleArm(
+                "revolute", kLimit + "<safety_controller k_velocity='1' soft_lower_limit='2' soft_upper_limit='3'/>")),
+            "robot description: joint 'j1' has soft limits 2 to 3 that leave nothing of its hard limits -1 to 1");
+}
+
+TEST(UrdfFaultsTest, FrictionThatDrives) {
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit + "<dynamics damping='-1' friction='0'/>")),
+            "robot description: joint 'j1' has negative damping or friction, which would drive it");
+}
+
+TEST(UrdfFaultsTest, NegativeMass) {
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "<inertial><mass value='-2'/>" + kInertia + "</inertial>")),
+            "robot description: link 'hand' has mass -2 kg, expected a positive one");
+}
+
+TEST(UrdfFaultsTest, MimicsThatCannotBeFollowed) {
+  const auto side = [](const std::string& mimic) {
+    return "<link name='finger'/><joint name='grip' type='revolute'><parent link='hand'/><child link='finger'/>" +
+           kLimit + "<mimic joint='" + mimic + "'/></joint>";
+  };
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("ghost")), "base", "hand"),
+            "robot description: joint 'grip' mimics joint 'ghost', which does not exist");
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("grip")), "base", "hand"),
+            "robot description: joint 'grip' mimics itself by way of other joints");
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("j1")), "base", "hand"),
+            "robot description: joint 'grip' beside the chain mimics joint 'j1' of the arm, so what hangs from it "
+            "cannot be lumped; lock it at a position to ignore that");
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("j1")), "base", "finger"),
+            "robot description: joint 'grip' mimics joint 'j1' and lies in the chain; every joint of an arm must move "
+            "by itself");
+  DescriptionOptions locked;
+  locked.tip = "hand";
+  locked.locked = {{"grip", 0.2}};
+  EXPECT_NO_THROW(describeRobot(simpleArm("revolute", kLimit, "", side("j1")), locked));
+}
+
+TEST(UrdfFaultsTest, LinksThatAreNoTree) {
+  const std::string loop =
+      "<link name='x'/><link name='y'/>"
+      "<joint name='a' type='fixed'><parent link='x'/><child link='y'/></joint>"
+      "<joint name='b' type='fixed'><parent link='y'/><child link='x'/></joint>";
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", loop), "base", "hand"),
+            "robot description: links 'x', 'y' form a loop that does not hang from the root link 'base'; a URDF must "
+            "be a tree");
+  const std::string second_parent =
+      "<link name='x'/><joint name='a' type='fixed'><parent link='base'/><child link='x'/></joint>"
+      "<joint name='b' type='fixed'><parent link='x'/><child link='hand'/></joint>";
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", second_parent), "base", "hand"),
+            "robot description: link 'hand' is the child of two joints; a URDF must be a tree");
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", "<link name='alone'/>")),
+            "robot description: not a valid URDF: Failed to find root link: Two root links found: [alone] and [base]");
+}
+
+TEST(UrdfFaultsTest, InertiaIsAskedForOnlyByDynamics) {
+  const RobotModel massless(describeRobot(simpleArm("revolute", kLimit), {}));
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.3);
+  EXPECT_NO_THROW(massless.forwardKinematics(q));
+  EXPECT_EQ(sentenceOf([&] { massless.gravity(q); }),
+            "no dynamics for robot 'r': robot description: nothing that joint 'j1' moves has mass up to the next "
+            "joint; give link 'hand' an <inertial> element");
+
+  const std::string impossible =
+      "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
+  const RobotModel unphysical(describeRobot(simpleArm("revolute", kLimit, impossible), {}));
+  EXPECT_NO_THROW(unphysical.jacobian(q));
+  EXPECT_EQ(sentenceOf([&] { unphysical.massMatrix(q); }),
+            "no dynamics for robot 'r': robot description: link 'hand' has principal moments of inertia 1, 1, 3 "
+            "kg m², which no body has: the largest may not exceed the sum of the other two");
+}
+
+TEST(UrdfFaultsTest, InertiaThatCannotBeReadIsNoMasslessLink) {
+  const auto dynamicsFaultOf = [](const std::string& in_inertial) {
+    const std::string urdf = simpleArm("revolute", kLimit, "<inertial>" + in_inertial + "</inertial>");
+    return sentenceOf([&] { RobotModel(describeRobot(urdf, {})).gravity(Eigen::VectorXd::Zero(1)); });
+  };
+  const std::string where =
+      "no dynamics for robot 'r': robot description: link 'hand' has an <inertial> element that "
+      "cannot be read: ";
+  EXPECT_EQ(dynamicsFaultOf("<mass value='nan'/>" + kInertia), where + "Inertial: mass [nan] is not a float");
+  EXPECT_EQ(dynamicsFaultOf("<mass value='1'/>"), where + "Inertial element must have inertia element");
+  EXPECT_EQ(dynamicsFaultOf(kInertia), where + "Inertial element must have a mass element");
+  EXPECT_EQ(dynamicsFaultOf("<mass value='1'/>" + kInertia), "no error");
+}
+
+TEST(UrdfFaultsTest, NothingIsPrintedToTheConsole) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  faultOf(simpleArm("revolute", ""));
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace demo_logger
