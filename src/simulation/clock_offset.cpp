@@ -1,0 +1,29 @@
+#include "demo_logger/simulation/clock_offset.h"
+
+#include <algorithm>
+
+namespace demo_logger {
+namespace {
+
+constexpr std::size_t kFewest = 5;
+constexpr std::size_t kMost = 1000;  // of a fast publisher; bounds the memory
+constexpr Nanoseconds kWindow = kNanosecondsPerSecond;
+constexpr Nanoseconds kShortestTransport = -20'000'000;
+constexpr Nanoseconds kLongestTransport = 100'000'000;
+
+}  // namespace
+
+void ClockOffset::observe(Nanoseconds stamp, Nanoseconds receipt) {
+  if (value_) return;
+  if (delays_.empty()) first_receipt_ = receipt;
+  if (delays_.size() < kMost) delays_.push_back(receipt - stamp);
+  if (delays_.size() < kFewest || receipt - first_receipt_ < kWindow) return;
+
+  const auto middle = delays_.begin() + static_cast<std::ptrdiff_t>(delays_.size() / 2);
+  std::nth_element(delays_.begin(), middle, delays_.end());
+  const bool is_transport = *middle >= kShortestTransport && *middle <= kLongestTransport;
+  value_ = is_transport ? 0 : *middle;
+  delays_.clear();
+}
+
+}  // namespace demo_logger
