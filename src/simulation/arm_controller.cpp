@@ -7,10 +7,10 @@
 
 #include "demo_logger/simulation/command_gate.h"
 #include "demo_logger/trajectory/error.h"
-#include "src/simulation/print.h"
-#include "src/simulation/reasons.h"
-#include "src/simulation/twist_resolution.h"
-#include "src/simulation/velocity_reference.h"
+#include "print.h"
+#include "reasons.h"
+#include "twist_resolution.h"
+#include "velocity_reference.h"
 
 namespace demo_logger {
 namespace {
@@ -152,7 +152,7 @@ class ArmController::Implementation {
     return torque;
   }
 
-  /// Lets a torque through unless a joint would leave its velocity range within about 1/k; then all joints get the
+  /// Lets a torque through unless a joint would leave its velocity range within about 1/(2k); then all joints get the
   /// torque for the nearest acceleration that does not.
   Eigen::VectorXd guardEffort(const Eigen::VectorXd& asked, const ArmState& state, Reasons& reasons) {
     reference_.follow(state.dq);
@@ -162,23 +162,44 @@ class ArmController::Implementation {
     const Eigen::VectorXd predicted = model_.massMatrix(state.q).llt().solve(torque - bias);
     Eigen::VectorXd allowed = predicted;
     const double most = configuration_.max_acceleration;
-    // Half the deceleration is kept in hand for what this first-order law lags behind.
+    // This law sees one tick ahead and knows no stiction: it is stiff, and keeps half the deceleration and a part of
+    // the velocity in hand.
+    constexpr double kShareOfVelocity = 0.95;
+    const double gain = 2.0 * configuration_.velocity_gain;
     const BrakingRule rule{most / 2.0, configuration_.control_period, configuration_.position_margin};
     for (std::size_t i = 0; i < joints().size(); ++i) {
       const auto j = static_cast<Eigen::Index>(i);
       const VelocityRange range = velocityRange(joints()[i], state.q[j], rule);
-      const double fastest = std::max(configuration_.velocity_gain * (range.upper - state.dq[j]), -most);
-      const double slowest = std::min(configuration_.velocity_gain * (range.lower - state.dq[j]), most);
+      const double fastest = gain * (kShareOfVelocity * range.upper - state.dq[j]);
+      const double slowest = gain * (kShareOfVelocity * range.lower - state.dq[j]);
       allowed[j] = std::clamp(predicted[j], slowest, fastest);
       if (allowed[j] == predicted[j]) continue;
-      const bool above = predicted[j] > fastest;
-      const bool by_position = above ? range.upper_by_position : range.lower_by_position;
+      const bool by_position = predicted[j] > fastest ? range.upper_by_position : range.lower_by_position;
       reasons.add(joints()[i].name +
                   (by_position ? " braked before its position limit" : " braked at its velocity limit"));
     }
     if (allowed == predicted) return torque;
-    torque = model_.inverseDynamics(state.q, state.dq, allowed) + friction(state.dq);
-    return limitTorque(torque, reasons);
+    // Once it interferes, no joint shall be so quick that the others' forces change within the tick.
+    const double quickest = 10.0 * most;
+    return feasibleTorque(allowed.cwiseMax(-quickest).cwiseMin(quickest), state);
+  }
+
+  /// The torque for `acceleration`, or where a motor is too weak for it, for something between it and braking all
+  /// joints: clamping that motor alone would let the others push it over its limit.
+  Eigen::VectorXd feasibleTorque(const Eigen::VectorXd& acceleration, const ArmState& state) const {
+    const double most = configuration_.max_acceleration;
+    const Eigen::VectorXd braking = (-configuration_.velocity_gain * state.dq).cwiseMax(-most).cwiseMin(most);
+    const Eigen::VectorXd resisting = friction(state.dq);
+    Eigen::VectorXd torque = model_.inverseDynamics(state.q, state.dq, braking) + resisting;
+    const Eigen::VectorXd more = model_.inverseDynamics(state.q, state.dq, acceleration) + resisting - torque;
+    double share = 1.0;
+    for (Eigen::Index i = 0; i < torque.size(); ++i) {
+      const double room = joints()[static_cast<std::size_t>(i)].effort_limit - std::copysign(1.0, more[i]) * torque[i];
+      if (std::abs(more[i]) > room) share = std::min(share, std::max(room, 0.0) / std::abs(more[i]));
+    }
+    torque += share * more;
+    Reasons known;
+    return limitTorque(torque, known);
   }
 
   Eigen::VectorXd limitTorque(Eigen::VectorXd torque, Reasons& reasons) const {
@@ -204,8 +225,8 @@ ArmController::ArmController(RobotDescription description, const ArmControllerCo
                              ControlMode mode) {
   validate(configuration);
   if (!description.has_inertia) {
-    throw ModelError("arm controller: " + description.name +
-                     " has moving links without mass; give each an <inertial> in the URDF.");
+    throw ModelError("arm controller: " + description.name + " cannot be controlled: " + description.inertia_fault +
+                     ".");
   }
   implementation_ = std::make_unique<Implementation>(std::move(description), configuration, mode);
 }

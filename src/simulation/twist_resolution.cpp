@@ -1,4 +1,4 @@
-#include "src/simulation/twist_resolution.h"
+#include "twist_resolution.h"
 
 #include <Eigen/SVD>
 

@@ -1,4 +1,4 @@
-#include "src/simulation/velocity_range.h"
+#include "velocity_range.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 namespace demo_logger {
 namespace {
 
-constexpr double kShareOfVelocityLimit = 0.99;
+constexpr double kShareOfVelocityLimit = 0.97;
 
 /// Largest v with v h + v²/(2a) ≤ distance: one more period at v, then braking with a.
 double brakingVelocity(double distance, const BrakingRule& rule) {

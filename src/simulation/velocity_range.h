@@ -19,7 +19,7 @@ struct BrakingRule {
 };
 
 /// Velocities from which the joint can still come to rest in front of its position limits, braking from the next tick
-/// on, and which lie a hundredth below its velocity limit, which leaves room for the tracking error.
+/// on, and which lie 3 % below its velocity limit, which leaves room for the tracking error.
 VelocityRange velocityRange(const ArmJoint& joint, double position, const BrakingRule& rule);
 
 }  // namespace demo_logger

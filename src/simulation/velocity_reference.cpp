@@ -1,11 +1,36 @@
-#include "src/simulation/velocity_reference.h"
+#include "velocity_reference.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "src/simulation/print.h"
+#include "print.h"
 
 namespace demo_logger {
+namespace {
+
+Eigen::VectorXd clamped(const Eigen::VectorXd& values, double most) { return values.cwiseMax(-most).cwiseMin(most); }
+
+/// The longest part of `target` within `most` of `before` in every joint; where the velocity points elsewhere as yet,
+/// so that there is none, the straight way there.
+Eigen::VectorXd alongTarget(const Eigen::VectorXd& target, const Eigen::VectorXd& before, double most) {
+  double shortest = 0.0;
+  double longest = 1.0;
+  for (Eigen::Index i = 0; i < target.size(); ++i) {
+    if (target[i] == 0.0) {
+      if (std::abs(before[i]) > most) longest = -1.0;
+      continue;
+    }
+    const double one = (before[i] - most) / target[i];
+    const double other = (before[i] + most) / target[i];
+    shortest = std::max(shortest, std::min(one, other));
+    longest = std::min(longest, std::max(one, other));
+  }
+  if (longest >= shortest) return longest * target;
+  const Eigen::VectorXd change = target - before;
+  return before + most / change.cwiseAbs().maxCoeff() * change;
+}
+
+}  // namespace
 
 VelocityReference::VelocityReference(const std::vector<ArmJoint>& joints,
                                      const ArmControllerConfiguration& configuration)
@@ -19,7 +44,7 @@ VelocityReference::VelocityReference(const std::vector<ArmJoint>& joints,
 void VelocityReference::step(const Eigen::VectorXd& target, const ArmState& state, bool keep_direction,
                              Reasons& reasons) {
   // Held back by saturated motors or an obstacle, the arm would otherwise jump after a reference that has left it.
-  const Eigen::VectorXd before = state.dq + (velocity_ - state.dq).cwiseMax(-leash_).cwiseMin(leash_);
+  const Eigen::VectorXd before = state.dq + clamped(velocity_ - state.dq, leash_);
 
   double scale = 1.0;
   Eigen::VectorXd limited = target;
@@ -33,18 +58,12 @@ void VelocityReference::step(const Eigen::VectorXd& target, const ArmState& stat
   }
   if (keep_direction) limited = scale * target;
 
-  Eigen::VectorXd change = limited - before;
   const double most = rule_.deceleration * rule_.period;
-  const double largest = change.cwiseAbs().maxCoeff();
-  if (largest > most * (1.0 + 1e-9)) {
+  velocity_ = limited;
+  if ((limited - before).cwiseAbs().maxCoeff() > most * (1.0 + 1e-9)) {
     reasons.add("acceleration limited to " + print(rule_.deceleration) + " rad/s2 or m/s2");
-    if (keep_direction) {
-      change *= most / largest;
-    } else {
-      change = change.cwiseMax(-most).cwiseMin(most);
-    }
+    velocity_ = keep_direction ? alongTarget(limited, before, most) : before + clamped(limited - before, most);
   }
-  velocity_ = before + change;
 
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const auto j = static_cast<Eigen::Index>(i);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "demo_logger/simulation/arm_controller.h"
-#include "src/simulation/reasons.h"
-#include "src/simulation/velocity_range.h"
+#include "reasons.h"
+#include "velocity_range.h"
 
 namespace demo_logger {
 
