@@ -29,11 +29,11 @@ void requireBagFile(const std::filesystem::path& path) {
   if (!error && size == 0) {
     throw FileError(path.string() + ": empty (0 bytes); expected a ROS bag");
   }
-  constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
+  constexpr std::string_view kMagic = "#ROSBAG V";
   std::string start(kMagic.size(), ' ');
   std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
   if (start != kMagic) {
-    throw FileError(path.string() + ": not a ROS bag: it does not begin with \"#ROSBAG V2.0\"");
+    throw FileError(path.string() + ": not a ROS bag: it does not begin with \"#ROSBAG V\"");
   }
 }
 
