@@ -100,11 +100,11 @@ std::string CommandGate::checkStamp(const ArmCommand& command, Nanoseconds now) 
     return "more than " + std::to_string(kMostSources) + " publishers have commanded this arm; " + command.source +
            " is one too many";
   }
-  ClockOffset& clock = clocks_[command.source];
+  PublisherClock& clock = clocks_[command.source];
   clock.observe(command.stamp, now);
-  const Nanoseconds age = now - command.stamp - clock.value().value_or(0);
+  const Nanoseconds age = now - command.stamp - clock.offset().value_or(0);
   const Nanoseconds timeout = fromSeconds(configuration_.timeout);
-  const std::string hint = clock.value() ? "" : "; stale, or the clocks differ: judged after a second of commands";
+  const std::string hint = clock.offset() ? "" : "; stale, or the clocks differ: judged after a second of commands";
   if (age > timeout) return "the stamp of a command is " + printDuration(age) + " old" + hint;
   if (-age > timeout) return "the stamp of a command is " + printDuration(-age) + " in the future" + hint;
   if (command_ && command_->source == command.source && command.stamp < command_->stamp) {
@@ -121,7 +121,7 @@ const ArmCommand* CommandGate::inForce(Nanoseconds now) {
     return nullptr;
   }
   if (command_->stamp != 0) {
-    const Nanoseconds offset = clocks_[command_->source].value().value_or(0);
+    const Nanoseconds offset = clocks_[command_->source].offset().value_or(0);
     if (now - command_->stamp - offset > timeout) {
       clear("the last command is older than " + print(configuration_.timeout) + " s by its stamp");
       return nullptr;
@@ -138,7 +138,7 @@ void CommandGate::clear(const std::string& why) {
 std::vector<std::string> CommandGate::clockMismatches() const {
   std::vector<std::string> mismatches;
   for (const auto& [source, clock] : clocks_) {
-    const Nanoseconds offset = clock.value().value_or(0);
+    const Nanoseconds offset = clock.offset().value_or(0);
     if (offset == 0) continue;
     mismatches.push_back(source + ": stamps are " + printDuration(std::abs(offset)) +
                          (offset > 0 ? " behind" : " ahead of") +

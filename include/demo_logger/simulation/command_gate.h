@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "demo_logger/simulation/arm_command.h"
-#include "demo_logger/simulation/clock_offset.h"
+#include "demo_logger/simulation/publisher_clock.h"
 #include "demo_logger/trajectory/stamp.h"
 
 namespace demo_logger {
@@ -46,7 +46,7 @@ class CommandGate {
   std::string checkStamp(const ArmCommand& command, Nanoseconds now);
 
   Configuration configuration_;
-  std::map<std::string, ClockOffset> clocks_;  // by source
+  std::map<std::string, PublisherClock> clocks_;  // by source
   std::optional<ArmCommand> command_;
   Nanoseconds receipt_ = 0;
   std::string why_none_ = "no command yet";

@@ -10,17 +10,17 @@ namespace demo_logger {
 /// How far a publisher's clock is behind this one, judged from its messages: the median of receipt − stamp over the
 /// first second, and at least five of them, then frozen. Within [−20 ms, 100 ms] it is taken for transport, and the
 /// clocks for equal. A constant delay on the way cannot be told from a clock that is behind.
-class ClockOffset {
+class PublisherClock {
  public:
   void observe(Nanoseconds stamp, Nanoseconds receipt);
 
   /// Nothing until it is frozen; zero for clocks taken for equal.
-  std::optional<Nanoseconds> value() const { return value_; }
+  std::optional<Nanoseconds> offset() const { return offset_; }
 
  private:
   std::vector<Nanoseconds> delays_;
   Nanoseconds first_receipt_ = 0;
-  std::optional<Nanoseconds> value_;
+  std::optional<Nanoseconds> offset_;
 };
 
 }  // namespace demo_logger

@@ -1,4 +1,4 @@
-#include "demo_logger/simulation/clock_offset.h"
+#include "demo_logger/simulation/publisher_clock.h"
 
 #include <algorithm>
 
@@ -13,8 +13,8 @@ constexpr Nanoseconds kLongestTransport = 100'000'000;
 
 }  // namespace
 
-void ClockOffset::observe(Nanoseconds stamp, Nanoseconds receipt) {
-  if (value_) return;
+void PublisherClock::observe(Nanoseconds stamp, Nanoseconds receipt) {
+  if (offset_) return;
   if (delays_.empty()) first_receipt_ = receipt;
   if (delays_.size() < kMost) delays_.push_back(receipt - stamp);
   if (delays_.size() < kFewest || receipt - first_receipt_ < kWindow) return;
@@ -22,7 +22,7 @@ void ClockOffset::observe(Nanoseconds stamp, Nanoseconds receipt) {
   const auto middle = delays_.begin() + static_cast<std::ptrdiff_t>(delays_.size() / 2);
   std::nth_element(delays_.begin(), middle, delays_.end());
   const bool is_transport = *middle >= kShortestTransport && *middle <= kLongestTransport;
-  value_ = is_transport ? 0 : *middle;
+  offset_ = is_transport ? 0 : *middle;
   delays_.clear();
 }
 
