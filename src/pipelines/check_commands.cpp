@@ -61,9 +61,9 @@ void checkCommands(const Demonstration& demonstration, const CheckLimits& limits
     }
     if (stream.is_held && counts.future > 0) {
       findings.add("future_command", Severity::error,
-                   "stream " + stream.name + ": " + formatCount(counts.future, "row") +
-                       " hold a message from their future, by up to " + formatDuration(-counts.earliest) + ", first " +
-                       formatInstant(counts.first_future) +
+                   "stream " + stream.name + ": a message from the future stands in " +
+                       formatCount(counts.future, "row") + ", by up to " + formatDuration(-counts.earliest) +
+                       ", first " + formatInstant(counts.first_future) +
                        "; expected ages of 0 s or more. Was the file changed after the recording?");
     }
     if (stream.is_command && counts.stale > 0) {

@@ -7,7 +7,7 @@ namespace demo_logger {
 namespace {
 
 struct Loss {
-  const char* what;  // after "3"
+  const char* what;  // after "counter … is 3, expected 0: "
   Severity severity;
 };
 
@@ -15,27 +15,27 @@ struct Loss {
 const std::map<std::string, Loss>& losses() {
   static const std::map<std::string, Loss> kLosses = {
       {"late_rows",
-       {"joint states came after later ones had become rows and are lost; a longer max_wait gives them time",
+       {"joint states came after later ones had become rows and are lost; a longer max_wait gives them time.",
         Severity::warning}},
       {"duplicate_rows",
        {"joint states repeated the stamp of another and were left out; does the driver publish each twice?",
         Severity::warning}},
       {"malformed_joint_states",
-       {"joint states had arrays that do not fit their names and were dropped", Severity::warning}},
+       {"joint states had arrays that do not fit their names and were dropped.", Severity::warning}},
       {"malformed_stream_messages",
-       {"messages of streams did not fit their columns and were dropped", Severity::warning}},
+       {"messages of streams did not fit their columns and were dropped.", Severity::warning}},
       {"zero_stamps",
-       {"messages came without the stamp that others of their publisher have, and were dropped", Severity::warning}},
-      {"non_finite_values", {"values were not finite when they came and are NaN", Severity::warning}},
-      {"non_unit_quaternions", {"orientations came with a length other than 1", Severity::warning}},
+       {"messages lacked the stamp that others of their publisher have, and were dropped.", Severity::warning}},
+      {"non_finite_values", {"values were not finite when they came and are NaN.", Severity::warning}},
+      {"non_unit_quaternions", {"orientations came with a length other than 1.", Severity::warning}},
       {"unbridged_gaps",
-       {"values could not be interpolated, for want of a later message in time, and are NaN", Severity::warning}},
-      {"clock_outliers", {"joint states had a stamp far from their neighbours' and were dropped", Severity::warning}},
+       {"values could not be interpolated, for want of a later message in time, and are NaN.", Severity::warning}},
+      {"clock_outliers", {"joint states had a stamp far from their neighbours' and were dropped.", Severity::warning}},
       {"overflow",
        {"messages found the recorder's queue full and are lost; was the machine overloaded?", Severity::error}},
-      {"pushed_late", {"messages reached the synchroniser after rows they belonged to", Severity::warning}},
+      {"pushed_late", {"messages reached the synchroniser after the rows they belong to.", Severity::warning}},
       {"rows_not_written", {"rows could not be written to the disk and are lost; was it full?", Severity::error}},
-      {"infinities_written_as_nan", {"infinite values are written as NaN", Severity::warning}},
+      {"infinities_written_as_nan", {"infinite values were written as NaN.", Severity::warning}},
   };
   return kLosses;
 }
@@ -52,11 +52,11 @@ void checkCounters(const Metadata& metadata, Findings& findings) {
       continue;
     }
     const auto known = losses().find(name);
+    const std::string is = "counter " + name + " is " + std::to_string(count);
     if (known == losses().end()) {
-      findings.add("counter", Severity::warning, "counter " + name + " is " + std::to_string(count) + ", expected 0.");
+      findings.add("counter", Severity::warning, is + ", expected 0.");
     } else {
-      findings.add("counter", known->second.severity,
-                   "counter " + name + ": " + std::to_string(count) + " " + known->second.what + ".");
+      findings.add("counter", known->second.severity, is + ", expected 0: " + known->second.what);
     }
   }
 }
