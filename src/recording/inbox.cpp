@@ -24,7 +24,6 @@ Inbox::Pushed Inbox::push(Message message) {
     // Messages that wait for a verdict on the clock go last: they may be the only ones of the new clock.
     Messages& crowded = messages_.empty() ? behind_ : messages_;
     pushed.overflowed = true;
-    pushed.lost_from = crowded.begin()->second.source;
     crowded.erase(crowded.begin());
   }
   return pushed;

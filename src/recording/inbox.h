@@ -38,9 +38,8 @@ class Inbox {
 
   /// What happened to others when a message was pushed.
   struct Pushed {
-    bool late = false;          // it came behind the watermark
-    bool overflowed = false;    // one message was lost
-    std::size_t lost_from = 0;  // its source
+    bool late = false;        // it came behind the watermark
+    bool overflowed = false;  // one message was lost
   };
   Pushed push(Message message);
 

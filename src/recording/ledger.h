@@ -56,7 +56,6 @@ enum class FaultKind {
   pushed_late,
 };
 constexpr std::size_t kJointStatesSubject = static_cast<std::size_t>(-1);
-constexpr std::size_t kInboxSubject = static_cast<std::size_t>(-2);
 
 /// The counters and faults of one episode. Nothing that happens is left out; memory is bounded, since there are few
 /// kinds and subjects.

@@ -46,7 +46,6 @@ class Sequencer {
   /// Freezes `offset`, the present one with samples of what is yet to be processed.
   void setOffset(ClockOffset offset, Nanoseconds now);
 
-  Ledger& ledger() { return ledger_; }
   const Ledger& ledger() const { return ledger_; }
   const JointStates& jointStates() const { return joint_states_; }
   std::vector<StreamMetadata> streams() const;

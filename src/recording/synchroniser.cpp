@@ -64,7 +64,7 @@ class Synchroniser::Implementation {
 
   void push(std::size_t stream, StreamSample sample) {
     if (stream >= last_of_.size()) {
-      sequencer_.ledger().count(Counter::malformed_stream_messages);
+      ledger_.count(Counter::malformed_stream_messages);
       return;
     }
     last_of_[stream] = sample.arrival.receipt;
@@ -95,7 +95,24 @@ class Synchroniser::Implementation {
     sequencer_.end(request, listener);
   }
 
-  Sequencer& sequencer() { return sequencer_; }
+  void begin(Nanoseconds request) {
+    if (!sequencer_.isBegun()) ledger_.clear();
+    sequencer_.begin(request);
+  }
+
+  std::map<std::string, std::uint64_t> counters() const {
+    std::map<std::string, std::uint64_t> counters = sequencer_.ledger().counters();
+    for (const auto& [name, count] : ledger_.counters()) counters[name] += count;
+    return counters;
+  }
+
+  std::vector<Fault> faults() const {
+    std::vector<Fault> faults = sequencer_.faults();
+    faults.insert(faults.end(), ledger_.faults().begin(), ledger_.faults().end());
+    return faults;
+  }
+
+  const Sequencer& sequencer() const { return sequencer_; }
   std::optional<Nanoseconds> lastJointState() const { return last_joint_state_; }
   std::optional<Nanoseconds> lastOf(std::size_t stream) const {
     return stream < last_of_.size() ? last_of_[stream] : std::nullopt;
@@ -111,8 +128,8 @@ class Synchroniser::Implementation {
   }
 
   void reportLate(Nanoseconds receipt, std::size_t messages) {
-    sequencer_.ledger().count(Counter::pushed_late, messages);
-    sequencer_.ledger().report(FaultKind::pushed_late, kJointStatesSubject, receipt, [] {
+    ledger_.count(Counter::pushed_late, messages);
+    ledger_.report(FaultKind::pushed_late, kJointStatesSubject, receipt, [] {
       return std::string(
           "a message reached the recorder when its time of receipt had been dealt with; it counts as received then. "
           "Is the machine overloaded?");
@@ -120,8 +137,8 @@ class Synchroniser::Implementation {
   }
 
   void reportOverflow(Nanoseconds receipt) {
-    sequencer_.ledger().count(Counter::overflow);
-    sequencer_.ledger().report(FaultKind::overflow, kInboxSubject, receipt, [] {
+    ledger_.count(Counter::overflow);
+    ledger_.report(FaultKind::overflow, kJointStatesSubject, receipt, [] {
       return "more than " + std::to_string(Inbox::kCapacity) +
              " messages wait to be synchronised; the oldest are lost. Is the machine overloaded?";
     });
@@ -158,6 +175,7 @@ class Synchroniser::Implementation {
   }
 
   Inbox inbox_;
+  Ledger ledger_;  // of the inbox: what happens while pushing, before a message's turn comes
   Sequencer sequencer_;
   std::optional<Nanoseconds> last_joint_state_;
   std::vector<std::optional<Nanoseconds>> last_of_;
@@ -176,7 +194,7 @@ void Synchroniser::push(JointStateSample sample) { implementation_->push(std::mo
 
 void Synchroniser::push(std::size_t stream, StreamSample sample) { implementation_->push(stream, std::move(sample)); }
 
-void Synchroniser::begin(Nanoseconds request) { implementation_->sequencer().begin(request); }
+void Synchroniser::begin(Nanoseconds request) { implementation_->begin(request); }
 
 void Synchroniser::end(Nanoseconds request, RowListener& listener) { implementation_->end(request, listener); }
 
@@ -201,10 +219,10 @@ std::optional<Nanoseconds> Synchroniser::lastOf(std::size_t stream) const { retu
 std::vector<StreamMetadata> Synchroniser::streams() const { return implementation_->sequencer().streams(); }
 
 std::map<std::string, std::uint64_t> Synchroniser::counters() const {
-  return implementation_->sequencer().ledger().counters();
+  return implementation_->counters();
 }
 
-std::vector<Fault> Synchroniser::faults() const { return implementation_->sequencer().faults(); }
+std::vector<Fault> Synchroniser::faults() const { return implementation_->faults(); }
 
 const std::map<std::string, std::string>& Synchroniser::originalNames() const {
   return implementation_->sequencer().originalNames();
