@@ -8,7 +8,7 @@ void DiskFaults::report(const std::string& kind, Nanoseconds stamp, const std::s
   const std::lock_guard<std::mutex> lock(mutex_);
   auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.kind == kind; });
   if (entry == entries_.end()) {
-    entry = entries_.insert(entry, Entry{kind, Fault{stamp, what, 0}, lasting, what});
+    entry = entries_.insert(entry, Entry{kind, Fault{stamp, what, 0, Severity::error}, lasting, what});
   }
   ++entry->fault.count;
   entry->present = lasting;

@@ -57,7 +57,7 @@ std::string EpisodeArchive::label(const std::string& id, const EpisodeLabel& lab
 void EpisodeArchive::note(ClosedEpisode closed) {
   last_ = std::move(closed);
   if (!last_.error.empty()) {
-    faults_.push_back(Fault{last_.last_stamp, last_.error, 1});
+    faults_.push_back(Fault{last_.last_stamp, last_.error, 1, Severity::error});
   } else if (!last_.file.empty()) {
     finished_.push_back(last_.file);
   }

@@ -77,7 +77,11 @@ TEST_F(RecorderTest, RowsAreThoseReceivedFromTheStartToTheStop) {
   EXPECT_EQ(recorder_->stop(at(2.0), "", "").rows, 100U);
   run(2.0, 3.0);
   EXPECT_EQ(recorder_->start(at(3.0), "", "", "", "").id, "demo_000002");
-  run(3.0, 4.0);
+  run(3.0, 3.5);
+  for (const double seconds : {3.5, 3.51, 3.52}) {
+    recorder_->push(0, command(seconds));
+    recorder_->push(jointState(seconds));
+  }
   EXPECT_EQ(recorder_->stop(at(3.5), "", "").rows, 50U) << "what was received after the stop does not belong to it";
   EXPECT_EQ(secondsOf("demo_000001"), ticks(1, 2));
   EXPECT_EQ(secondsOf("demo_000002"), ticks(3, 3.5));
