@@ -1,29 +1,17 @@
 #include "demo_logger/simulation/bullet_arm.h"
 
-#include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
-#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
-#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
-#include <BulletCollision/CollisionShapes/btEmptyShape.h>
-#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
-#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
-#include <BulletDynamics/Featherstone/btMultiBodyJointLimitConstraint.h>
-#include <BulletDynamics/Featherstone/btMultiBodyJointMotor.h>
-#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
-
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
-#include <vector>
 
 #include "bullet_body.h"
+#include "bullet_world.h"
 #include "damping_law.h"
 #include "demo_logger/trajectory/error.h"
 
 namespace demo_logger {
 namespace {
-
-// Stiction of a whole arm creeps 3e-4 rad in 2 s with Bullet's default of 10 sweeps over the joints.
-constexpr int kSolverIterations = 50;
 
 const RobotDescription& requireInertia(const RobotDescription& description) {
   if (!description.has_inertia) {
@@ -34,148 +22,6 @@ const RobotDescription& requireInertia(const RobotDescription& description) {
 }
 
 double nearestToZero(const ArmJoint& joint) { return std::clamp(0.0, joint.lower, joint.upper); }
-
-Eigen::Isometry3d toEigen(const btTransform& transform) {
-  const btVector3& p = transform.getOrigin();
-  const btQuaternion q = transform.getRotation();
-  return Eigen::Translation3d(p.x(), p.y(), p.z()) * Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized();
-}
-
-/// Bullet's world with one arm in it. Members go in reverse order, the arm's world before what it refers to.
-class BulletWorld {
- public:
-  explicit BulletWorld(const RobotDescription& description)
-      : arm_(makeBulletBody(description)),
-        X_lastlink_tip_(description.X_lastlink_tip),
-        dispatcher_(&configuration_),
-        world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
-    const Eigen::Vector3d& gravity = description.gravity;
-    world_.setGravity(btVector3(gravity.x(), gravity.y(), gravity.z()));
-    world_.getSolverInfo().m_numIterations = kSolverIterations;
-    world_.addMultiBody(arm_.body.get());
-    for (int link = -1; link < size(); ++link) addCollider(link);
-    for (int i = 0; i < size(); ++i) addConstraints(i, description.joints[static_cast<std::size_t>(i)]);
-  }
-
-  ~BulletWorld() {
-    for (const auto& constraint : constraints_) world_.removeMultiBodyConstraint(constraint.get());
-    for (const auto& collider : colliders_) world_.removeCollisionObject(collider.get());
-    world_.removeMultiBody(arm_.body.get());
-  }
-  BulletWorld(const BulletWorld&) = delete;
-  BulletWorld& operator=(const BulletWorld&) = delete;
-
-  int size() const { return arm_.body->getNumLinks(); }
-
-  void place(const ArmState& state) {
-    for (int i = 0; i < size(); ++i) {
-      arm_.body->setJointPos(i, state.q[i]);
-      arm_.body->setJointVel(i, state.dq[i]);
-    }
-  }
-
-  void read(ArmState& state) const {
-    for (int i = 0; i < size(); ++i) {
-      state.q[i] = arm_.body->getJointPos(i);
-      state.dq[i] = arm_.body->getJointVel(i);
-    }
-  }
-
-  /// Coulomb friction is a motor that wants to stand still and is as strong as the friction [N m s per step].
-  void setStep(const RobotDescription& description, double step) {
-    for (int i = 0; i < size(); ++i) {
-      const auto& brake = brakes_[static_cast<std::size_t>(i)];
-      if (brake) brake->setMaxAppliedImpulse(description.joints[static_cast<std::size_t>(i)].friction * step);
-    }
-  }
-
-  /// Joint torques last for one call of stepSimulation only; with 0 internal sub-steps it makes one step of this
-  /// length.
-  void step(const Eigen::VectorXd& torque, double step) {
-    for (int i = 0; i < size(); ++i) arm_.body->addJointTorque(i, torque[i]);
-    world_.stepSimulation(step, /*maxSubSteps=*/0);
-  }
-
-  /// Impulse [N m s or N s] of Coulomb friction at joint i in the last step.
-  double frictionImpulse(int i) const {
-    const auto& brake = brakes_[static_cast<std::size_t>(i)];
-    return brake ? brake->getAppliedImpulse(0) : 0.0;
-  }
-
-  /// Bullet refreshes the links' poses lazily, one step late: ask for fresh ones.
-  Eigen::Isometry3d tipPose() {
-    arm_.body->forwardKinematics(scratch_rotations_, scratch_vectors_);
-    const Eigen::Isometry3d X_base_principal = toEigen(arm_.body->getLink(size() - 1).m_cachedWorldTransform);
-    return X_base_principal * arm_.X_link_principal.back().inverse() * X_lastlink_tip_;
-  }
-
-  void acceleration(const Eigen::VectorXd& torque, Eigen::VectorXd& result) {
-    btMultiBody& body = *arm_.body;
-    body.clearForcesAndTorques();
-    for (int i = 0; i < size(); ++i) {
-      body.addLinkForce(i, world_.getGravity() * body.getLinkMass(i));
-      body.addJointTorque(i, torque[i]);
-    }
-    // A step of no length leaves positions and velocities alone, and the accelerations in the scratch memory behind
-    // one number per joint and the base's six.
-    body.computeAccelerationsArticulatedBodyAlgorithmMultiDof(/*dt=*/0.0, scratch_numbers_, scratch_vectors_,
-                                                              scratch_matrices_, /*isConstraintPass=*/false,
-                                                              /*jointFeedbackInWorldSpace=*/false,
-                                                              /*jointFeedbackInJointFrame=*/false);
-    for (int i = 0; i < size(); ++i) result[i] = scratch_numbers_[body.getNumDofs() + 6 + i];
-    body.clearForcesAndTorques();
-  }
-
- private:
-  /// Bullet ignores the limits and motors of a link without a collider. These are empty and touch nothing.
-  void addCollider(int link) {
-    auto collider = std::make_unique<btMultiBodyLinkCollider>(arm_.body.get(), link);
-    collider->setCollisionShape(&no_shape_);
-    collider->setActivationState(DISABLE_DEACTIVATION);
-    if (link < 0) {
-      arm_.body->setBaseCollider(collider.get());
-    } else {
-      arm_.body->getLink(link).m_collider = collider.get();
-    }
-    world_.addCollisionObject(collider.get(), /*collisionFilterGroup=*/0, /*collisionFilterMask=*/0);
-    colliders_.push_back(std::move(collider));
-  }
-
-  void addConstraints(int i, const ArmJoint& joint) {
-    btMultiBodyJointMotor* brake = nullptr;
-    if (joint.friction > 0.0) {
-      auto motor = std::make_unique<btMultiBodyJointMotor>(arm_.body.get(), i, /*desiredVelocity=*/0.0,
-                                                           /*maxMotorImpulse=*/0.0);
-      brake = motor.get();
-      addConstraint(std::move(motor));
-    }
-    brakes_.push_back(brake);
-    if (std::isfinite(joint.lower) || std::isfinite(joint.upper)) {
-      addConstraint(std::make_unique<btMultiBodyJointLimitConstraint>(arm_.body.get(), i, joint.lower, joint.upper));
-    }
-  }
-
-  void addConstraint(std::unique_ptr<btMultiBodyConstraint> constraint) {
-    world_.addMultiBodyConstraint(constraint.get());
-    constraints_.push_back(std::move(constraint));
-  }
-
-  BulletBody arm_;
-  Eigen::Isometry3d X_lastlink_tip_;
-  btEmptyShape no_shape_;
-  std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
-  std::vector<std::unique_ptr<btMultiBodyConstraint>> constraints_;
-  std::vector<btMultiBodyJointMotor*> brakes_;  // one per joint, null without friction
-  btDefaultCollisionConfiguration configuration_;
-  btCollisionDispatcher dispatcher_;
-  btSimpleBroadphase broadphase_;
-  btMultiBodyConstraintSolver solver_;
-  btMultiBodyDynamicsWorld world_;
-  btAlignedObjectArray<btScalar> scratch_numbers_;
-  btAlignedObjectArray<btVector3> scratch_vectors_;
-  btAlignedObjectArray<btMatrix3x3> scratch_matrices_;
-  btAlignedObjectArray<btQuaternion> scratch_rotations_;
-};
 
 }  // namespace
 
@@ -192,6 +38,7 @@ class BulletArm::Implementation {
   void reset(const ArmState& given) {
     check("q", given.q);
     check("dq", given.dq);
+    checkLimits(given.q);
     state = given;
     friction = Eigen::VectorXd::Zero(size);
     world = std::make_unique<BulletWorld>(description);
@@ -208,6 +55,20 @@ class BulletArm::Implementation {
       throw ModelError("simulated robot '" + description.name + "': " + what + " of joint '" +
                        description.joints[static_cast<std::size_t>(i)].name + "' is " + std::to_string(values[i]) +
                        ", expected a finite number");
+    }
+  }
+
+  /// Bullet would throw an arm from far outside back inside within a step or two.
+  void checkLimits(const Eigen::VectorXd& q) const {
+    constexpr double kOvershoot = 0.05;  // [rad or m] more than a stopped arm leans into its limit
+    for (int i = 0; i < size; ++i) {
+      const ArmJoint& joint = description.joints[static_cast<std::size_t>(i)];
+      if (q[i] >= joint.lower - kOvershoot && q[i] <= joint.upper + kOvershoot) continue;
+      std::ostringstream sentence;
+      sentence << "simulated robot '" << description.name << "': joint '" << joint.name << "' cannot start at " << q[i]
+               << (joint.type == JointType::prismatic ? " m" : " rad") << ", expected a position from " << joint.lower
+               << " to " << joint.upper;
+      throw ModelError(sentence.str());
     }
   }
 
@@ -236,7 +97,6 @@ void BulletArm::step(const Eigen::VectorXd& torque, double duration, int substep
                      " s in " + std::to_string(substeps) + " parts, expected a positive time and at least one part");
   }
   const double step = duration / substeps;
-  own.world->setStep(own.description, step);
   own.damping.update(own.state.q, step);
   own.friction.setZero();
   for (int substep = 0; substep < substeps; ++substep) {

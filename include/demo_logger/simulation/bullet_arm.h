@@ -15,7 +15,8 @@ struct ArmState {
 
 /// The physics of one arm: Bullet's multi-body dynamics in double precision, built from the lumped description.
 ///   M(q) q̈ + C(q, q̇) q̇ + g(q) = τ − D q̇ − friction + limits
-/// Joint limits stop the arm; Coulomb friction holds it (stiction); viscous damping D brakes it, stable however large.
+/// Joint limits stop the arm dead; Coulomb friction holds it (stiction); viscous damping D brakes it, stable however
+/// large.
 /// The links touch neither each other nor a floor. Deterministic: same description, same calls, same bits.
 class BulletArm {
  public:
@@ -24,7 +25,8 @@ class BulletArm {
   explicit BulletArm(const RobotDescription& description);
   ~BulletArm();
 
-  /// Forgets everything before; a reset arm and a new one go on with the same bits.
+  /// Forgets everything before; a reset arm and a new one go on with the same bits. Throws ModelError if a value is not
+  /// finite, the size is wrong, or a position is outside its joint's limits.
   void reset(const ArmState& state);
   const ArmState& state() const;
 
