@@ -189,6 +189,7 @@ bool Recorder::Implementation::endOnRequest(Nanoseconds now) {
 Metadata Recorder::Implementation::everything(const char* status) const {
   Metadata metadata = episode_->metadata;
   metadata.status = status;
+  metadata.robot.joints = synchroniser_.joints();
   metadata.streams = synchroniser_.streams();
   metadata.counters = synchroniser_.counters();
   metadata.faults = synchroniser_.faults();
