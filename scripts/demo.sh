@@ -12,7 +12,7 @@ records an episode of about 20 s: a simulated human teleoperates the simulated a
 draws it. Everything lies in demos/ afterwards; running it again adds the next number.
 
   --rviz            show the arm while it moves (needs rviz and a screen)
-  NAME:=VALUE       given to demo.launch, for example duration:=10; "roslaunch --ros-args demo_logger demo.launch"
+  NAME:=VALUE       given to demo.launch, for example seed:=7; "roslaunch --ros-args demo_logger demo.launch"
                     lists the names
 
 Exit code 0 only if the recording passes its own checks.

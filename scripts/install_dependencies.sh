@@ -26,7 +26,7 @@ build_packages=(
 )
 
 # To launch the nodes and to draw what they recorded.
-run_packages=(python3-matplotlib python3-numpy python3-roslaunch rosbash)
+run_packages=(python3-matplotlib python3-numpy python3-roslaunch ros-robot-state-publisher rosbash)
 
 # To run the tests: independent peers (kdl_parser, the JSON Schema), rosbag play, a locale with a decimal comma, and
 # the two checks of the source that are part of every test run.

@@ -39,7 +39,7 @@ rosrun demo_logger draw_demonstration.py --help >/dev/null
 port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])')
 export ROS_MASTER_URI=http://localhost:$port
 # A short demonstration, from the simulated arm to the file.
-timeout --signal=INT 100 roslaunch --port "$port" demo_logger demo.launch output_dir:="$home/demos" duration:=3 \
+timeout --signal=INT 100 roslaunch --port "$port" demo_logger demo.launch output_dir:="$home/demos" \
   >"$home/launch.log" 2>&1 </dev/null &
 launched=$!
 wait $launched || { cat "$home/launch.log"; echo "demo.launch from the install space failed"; exit 1; }
