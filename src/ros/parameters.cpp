@@ -74,6 +74,15 @@ double toNumber(const std::string& name, XmlRpcValue value, const Range& range) 
   return number;
 }
 
+int toInteger(const std::string& name, XmlRpcValue value, const Range& range) {
+  if (value.getType() != XmlRpcValue::TypeInt) refuse(name, describe(value), expectation("a whole number", range));
+  const int number = static_cast<int>(value);
+  if (number < range.lower || number > range.upper) {
+    refuse(name, withUnit(std::to_string(number), range), expectation("a whole number", range));
+  }
+  return number;
+}
+
 std::string toText(const std::string& name, XmlRpcValue value) {
   if (value.getType() != XmlRpcValue::TypeString) refuse(name, describe(value), "a text");
   return static_cast<std::string>(value);
@@ -120,16 +129,8 @@ bool Parameters::flag(const std::string& key, bool fallback) {
 }
 
 int Parameters::integer(const std::string& key, int fallback, const Range& range) {
-  std::optional<XmlRpcValue> value = raw(key);
-  if (!value) return fallback;
-  if (value->getType() != XmlRpcValue::TypeInt) {
-    refuse(fullName(key), describe(*value), expectation("a whole number", range));
-  }
-  const int number = static_cast<int>(*value);
-  if (number < range.lower || number > range.upper) {
-    refuse(fullName(key), withUnit(std::to_string(number), range), expectation("a whole number", range));
-  }
-  return number;
+  const std::optional<XmlRpcValue> value = raw(key);
+  return value ? toInteger(fullName(key), *value, range) : fallback;
 }
 
 double Parameters::number(const std::string& key, double fallback, const Range& range) {
@@ -159,6 +160,13 @@ std::vector<double> Parameters::numbers(const std::string& key, const std::vecto
   if (!value) return fallback;
   return toList(fullName(key), *value, "a list of numbers",
                 [&](const std::string& name, const XmlRpcValue& item) { return toNumber(name, item, range); });
+}
+
+std::vector<int> Parameters::integers(const std::string& key, const std::vector<int>& fallback, const Range& range) {
+  const std::optional<XmlRpcValue> value = raw(key);
+  if (!value) return fallback;
+  return toList(fullName(key), *value, "a list of whole numbers",
+                [&](const std::string& name, const XmlRpcValue& item) { return toInteger(name, item, range); });
 }
 
 std::vector<std::string> Parameters::texts(const std::string& key, const std::vector<std::string>& fallback) {

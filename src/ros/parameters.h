@@ -39,6 +39,7 @@ class Parameters {
   /// One of `choices`, as `fallback` is.
   std::string choice(const std::string& key, const std::string& fallback, const std::vector<std::string>& choices);
   std::vector<double> numbers(const std::string& key, const std::vector<double>& fallback, const Range& range = {});
+  std::vector<int> integers(const std::string& key, const std::vector<int>& fallback, const Range& range = {});
   std::vector<std::string> texts(const std::string& key, const std::vector<std::string>& fallback);
   /// Rows of equal length.
   std::vector<std::vector<double>> matrix(const std::string& key, const std::vector<std::vector<double>>& fallback);

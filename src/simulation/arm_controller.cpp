@@ -51,7 +51,7 @@ class ArmController::Implementation {
                configuration.command_timeout}),
         reference_(model_.description().joints, configuration) {}
 
-  AppliedCommand tick(Nanoseconds now, const ArmState& state, const std::vector<ArmCommand>& commands) {
+  AppliedControl tick(Nanoseconds now, const ArmState& state, const std::vector<ArmCommand>& commands) {
     Reasons reasons;
     for (const ArmCommand& command : commands) {
       const std::string refusal = gate_.admit(command, mode_, now);
@@ -62,7 +62,7 @@ class ArmController::Implementation {
     const ArmCommand* command = gate_.inForce(now);
     if (command == nullptr) reasons.add(gate_.whyNone());
 
-    AppliedCommand applied;
+    AppliedControl applied;
     applied.mode = mode_;
     applied.names = mode_ == ControlMode::cartesian_velocity ? twistNames() : model_.description().jointNames();
     if (!state.q.allFinite() || !state.dq.allFinite()) {
@@ -242,7 +242,7 @@ void ArmController::reset() { implementation_->reset(); }
 std::uint64_t ArmController::refusedCommands() const { return implementation_->refused(); }
 std::vector<std::string> ArmController::clockMismatches() const { return implementation_->clockMismatches(); }
 
-AppliedCommand ArmController::tick(Nanoseconds now, const ArmState& state, const std::vector<ArmCommand>& commands) {
+AppliedControl ArmController::tick(Nanoseconds now, const ArmState& state, const std::vector<ArmCommand>& commands) {
   return implementation_->tick(now, state, commands);
 }
 

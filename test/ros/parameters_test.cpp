@@ -88,6 +88,13 @@ TEST(ParametersTest, ElementsOfAListAreNamedByTheirIndex) {
             "/arm/scale[1] is the text \"x\", expected a number.");
 }
 
+TEST(ParametersTest, AListOfWholeNumbersTakesNoOthers) {
+  EXPECT_EQ(makeParameters("axes", makeList({XmlRpcValue(2), XmlRpcValue(0)})).integers("axes", {}),
+            (std::vector<int>{2, 0}));
+  EXPECT_EQ(messageOf([] { makeParameters("axes", makeList({XmlRpcValue(1.5)})).integers("axes", {}); }),
+            "/arm/axes[0] is 1.5, expected a whole number.");
+}
+
 TEST(ParametersTest, RowsOfAMatrixAreEquallyLong) {
   const XmlRpcValue rows = makeList({makeList({XmlRpcValue(1), XmlRpcValue(2)}), makeList({XmlRpcValue(3)})});
   EXPECT_EQ(messageOf([&] { makeParameters("gain", rows).matrix("gain", {}); }),

@@ -24,7 +24,7 @@ struct ArmControllerConfiguration {
 void validate(const ArmControllerConfiguration& configuration);
 
 /// What the arm did with its commands in one control tick.
-struct AppliedCommand {
+struct AppliedControl {
   ControlMode mode = ControlMode::velocity;
   std::vector<std::string> names;  // of the components of `command`
   Eigen::VectorXd command;         // in force during the tick, after limits; Cartesian ones in base axes
@@ -56,7 +56,7 @@ class ArmController {
 
   /// The tick that starts at `now` [ns on the clock by which commands are received] in `state`, with the commands that
   /// came in since the last tick. `now` must not decrease.
-  AppliedCommand tick(Nanoseconds now, const ArmState& state, const std::vector<ArmCommand>& commands);
+  AppliedControl tick(Nanoseconds now, const ArmState& state, const std::vector<ArmCommand>& commands);
 
   /// The reference at rest and no command in force, as after construction.
   void reset();

@@ -27,7 +27,7 @@ struct ArmTick {
   Nanoseconds stamp = 0;
   JointReading reading;  // of the sensors at `stamp`; effort: the motor torque held from `stamp` to the next tick
   ArmState truth;        // at `stamp`
-  AppliedCommand applied;
+  AppliedControl applied;
 };
 
 /// An arm on the desk: motors, controller and sensors around Bullet's physics. One call is one control tick: sense,

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <demo_logger/AppliedCommand.h>
+#include <demo_logger/SetControlMode.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Float64MultiArray.h>
+#include <std_srvs/Empty.h>
+#include <std_srvs/Trigger.h>
+#include <topic_tools/shape_shifter.h>
+
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demo_logger/simulation/simulated_arm.h"
+#include "demo_logger/simulation/tick_clock.h"
+#include "src/nodes/simulated_arm_parameters.h"
+
+namespace demo_logger {
+
+/// Wires a SimulatedArm to ROS: commands and services come in on one thread, and wait for the next control tick, which
+/// the thread in run() makes in real time.
+///   subscribes  teleop_cmd (Twist or TwistStamped), joint_group_{effort,velocity}_controller/command
+///   publishes   joint_states, applied_command, ground_truth/joint_states, /clock when asked, /diagnostics
+///   services    ~set_control_mode, ~reset_simulation, ~pause_physics, ~unpause_physics
+class SimulatedArmNode {
+ public:
+  SimulatedArmNode(ros::NodeHandle node, ros::NodeHandle private_node, const SimulatedArmParameters& parameters);
+
+  /// Until ROS shuts down.
+  void run();
+
+ private:
+  using TwistEvent = ros::MessageEvent<topic_tools::ShapeShifter const>;
+  using JointEvent = ros::MessageEvent<std_msgs::Float64MultiArray const>;
+
+  /// What came in between two ticks.
+  struct Inbox {
+    std::vector<ArmCommand> commands;
+    std::uint64_t dropped = 0;
+    std::optional<ControlMode> mode;
+    bool reset = false;
+  };
+  /// What the loop has to say to the diagnostics.
+  struct LoopReport {
+    std::uint64_t ticks = 0;
+    std::uint64_t overruns = 0;
+    std::uint64_t jumps = 0;
+    std::uint64_t refused = 0;
+    std::uint64_t dropped = 0;
+    Nanoseconds largest_delay = 0;
+    bool paused = false;
+    std::string mode;
+    std::string reason;
+    std::vector<std::string> clock_mismatches;
+  };
+
+  void receiveTwist(const TwistEvent& event);
+  void receiveJoints(ControlMode mode, const JointEvent& event);
+  void put(ArmCommand command);
+  bool setControlMode(SetControlMode::Request& request, SetControlMode::Response& response);
+  bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool setPaused(bool paused);
+
+  Inbox takeInbox();
+  void tick(TickClock& clock);
+  void publish(const ArmTick& tick);
+  void report(TickClock& clock, const ArmTick& tick, std::uint64_t dropped);
+  void diagnoseLoop(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnoseCommands(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  SimulatedArmParameters parameters_;
+  SimulatedArm arm_;
+  ros::Publisher joint_states_;
+  ros::Publisher applied_command_;
+  ros::Publisher ground_truth_;
+  ros::Publisher clock_;
+  std::vector<ros::Subscriber> subscribers_;
+  std::vector<ros::ServiceServer> services_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::WallTimer diagnostics_timer_;
+  sensor_msgs::JointState joint_state_message_;  // reused: names do not change
+  AppliedCommand::Ptr applied_message_;
+
+  std::mutex mutex_;  // guards what follows
+  Inbox inbox_;
+  bool paused_ = false;
+  LoopReport report_;
+  LoopReport last_report_;  // of the diagnostics before
+};
+
+}  // namespace demo_logger

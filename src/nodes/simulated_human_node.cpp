@@ -1,0 +1,119 @@
+// simulated_human_node: sees the true arm, moves a joystick. ground_truth/joint_states → joy. Ends with its task.
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <sensor_msgs/Joy.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "demo_logger/robot/robot_model.h"
+#include "demo_logger/simulation/simulated_human.h"
+#include "src/nodes/teleop_parameters.h"
+#include "src/ros/node_main.h"
+
+namespace demo_logger {
+namespace {
+
+constexpr std::uint32_t kQueue = 100;
+constexpr double kMostButtons = 63.0;
+constexpr double kPatience = 10.0;  // [s] between words about a missing arm
+
+struct SimulatedHumanParameters {
+  SimulatedHumanConfiguration human;
+  RobotDescription robot;
+};
+
+SimulatedHumanParameters readSimulatedHumanParameters(const ros::NodeHandle& private_node) {
+  Parameters parameters = readParameters(private_node);
+  SimulatedHumanParameters result;
+  parameters.choice("task", "teleoperation", {"teleoperation"});
+  DescriptionOptions chain;
+  chain.base = parameters.text("base", "");
+  chain.tip = parameters.text("tip", "");
+
+  SimulatedHumanConfiguration& human = result.human;
+  human.seed = static_cast<std::uint64_t>(parameters.integer("seed", 1, {0.0, 2147483647.0, ""}));
+  human.reading_period = 1.0 / parameters.number("joy_rate", 50.0, {10.0, 1000.0, "Hz"});
+  human.reaction_delay = parameters.number("reaction_delay", human.reaction_delay, {0.0, 0.5, "s"});
+  human.tremor = parameters.number("tremor", human.tremor, {0.0, 0.2, "of an axis"});
+  human.largest_rate = parameters.number("largest_rate", human.largest_rate, {0.1, 1000.0, "1/s"});
+  human.start_button = parameters.integer("start_button", -1, {-1.0, kMostButtons, ""});
+  human.stop_button = parameters.integer("stop_button", -1, {-1.0, kMostButtons, ""});
+  Parameters device = parameters.group("device");
+  human.device = readTeleoperation(device);
+  device.rejectUnknown();
+  parameters.rejectUnknown();
+  result.robot = describeRobot(readRobotDescription(private_node), chain);
+  return result;
+}
+
+class SimulatedHumanNode {
+ public:
+  SimulatedHumanNode(ros::NodeHandle node, const SimulatedHumanParameters& parameters)
+      : model_(parameters.robot), human_(parameters.human), period_(fromSeconds(parameters.human.reading_period)) {
+    joy_ = node.advertise<sensor_msgs::Joy>("joy", kQueue);
+    truth_ = node.subscribe("ground_truth/joint_states", kQueue, &SimulatedHumanNode::see, this);
+    reminder_ = node.createWallTimer(ros::WallDuration(kPatience), [this](const ros::WallTimerEvent&) {
+      if (!next_reading_) ROS_WARN_STREAM("no joint states on " << truth_.getTopic() << " yet; waiting for the arm.");
+    });
+  }
+
+ private:
+  /// The readings are due by the arm's own stamps: then they are the same whatever the machine is busy with.
+  void see(const sensor_msgs::JointState& state) {
+    const auto now = static_cast<Nanoseconds>(state.header.stamp.toNSec());
+    if (next_reading_ && now < *next_reading_) return;
+    const std::optional<Eigen::VectorXd> q = positions(state);
+    if (!q) {
+      ROS_ERROR_STREAM_THROTTLE(kPatience, truth_.getTopic() << " lacks joints of " << model_.description().name
+                                                             << ", expected all from " << model_.description().base
+                                                             << " to " << model_.description().tip << ".");
+      return;
+    }
+    next_reading_ = next_reading_ ? *next_reading_ + period_ : now + period_;
+    publish(human_.next(now, model_.forwardKinematics(*q)), state.header.stamp);
+    if (human_.finished()) {
+      ROS_INFO("the task is done.");
+      ros::requestShutdown();
+    }
+  }
+
+  std::optional<Eigen::VectorXd> positions(const sensor_msgs::JointState& state) const {
+    Eigen::VectorXd q(model_.size());
+    for (int i = 0; i < model_.size(); ++i) {
+      const std::string& name = model_.description().joints[static_cast<std::size_t>(i)].name;
+      const auto found = std::find(state.name.begin(), state.name.end(), name);
+      const auto index = static_cast<std::size_t>(found - state.name.begin());
+      if (found == state.name.end() || index >= state.position.size()) return std::nullopt;
+      q[i] = state.position[index];
+    }
+    return q;
+  }
+
+  void publish(const DeviceReading& reading, const ros::Time& stamp) {
+    sensor_msgs::Joy joy;
+    joy.header.stamp = stamp;
+    joy.axes.assign(reading.axes.begin(), reading.axes.end());
+    joy.buttons.assign(reading.buttons.begin(), reading.buttons.end());
+    joy_.publish(joy);
+  }
+
+  RobotModel model_;
+  SimulatedHuman human_;
+  Nanoseconds period_;
+  std::optional<Nanoseconds> next_reading_;
+  ros::Publisher joy_;
+  ros::Subscriber truth_;
+  ros::WallTimer reminder_;
+};
+
+}  // namespace
+}  // namespace demo_logger
+
+int main(int argc, char** argv) {
+  return demo_logger::runNode(argc, argv, "simulated_human", [] {
+    demo_logger::SimulatedHumanNode human(ros::NodeHandle(),
+                                          demo_logger::readSimulatedHumanParameters(ros::NodeHandle("~")));
+    ros::spin();
+  });
+}
