@@ -16,10 +16,12 @@ namespace {
 
 constexpr std::uint32_t kQueue = 100;
 constexpr double kMostButtons = 63.0;
+constexpr double kMostListeners = 10.0;
 constexpr double kPatience = 10.0;  // [s] between words about a missing arm
 
 struct SimulatedHumanParameters {
   SimulatedHumanConfiguration human;
+  std::uint32_t listeners = 1;  // nodes that must listen to joy before the human begins, lest a button is not heard
   RobotDescription robot;
 };
 
@@ -39,6 +41,7 @@ SimulatedHumanParameters readSimulatedHumanParameters(const ros::NodeHandle& pri
   human.largest_rate = parameters.number("largest_rate", human.largest_rate, {0.1, 1000.0, "1/s"});
   human.start_button = parameters.integer("start_button", -1, {-1.0, kMostButtons, ""});
   human.stop_button = parameters.integer("stop_button", -1, {-1.0, kMostButtons, ""});
+  result.listeners = static_cast<std::uint32_t>(parameters.integer("listeners", 1, {0.0, kMostListeners, ""}));
   Parameters device = parameters.group("device");
   human.device = readTeleoperation(device);
   device.rejectUnknown();
@@ -50,11 +53,17 @@ SimulatedHumanParameters readSimulatedHumanParameters(const ros::NodeHandle& pri
 class SimulatedHumanNode {
  public:
   SimulatedHumanNode(ros::NodeHandle node, const SimulatedHumanParameters& parameters)
-      : model_(parameters.robot), human_(parameters.human), period_(fromSeconds(parameters.human.reading_period)) {
+      : model_(parameters.robot),
+        human_(parameters.human),
+        listeners_(parameters.listeners),
+        period_(fromSeconds(parameters.human.reading_period)) {
     joy_ = node.advertise<sensor_msgs::Joy>("joy", kQueue);
     truth_ = node.subscribe("ground_truth/joint_states", kQueue, &SimulatedHumanNode::see, this);
     reminder_ = node.createWallTimer(ros::WallDuration(kPatience), [this](const ros::WallTimerEvent&) {
-      if (!next_reading_) ROS_WARN_STREAM("no joint states on " << truth_.getTopic() << " yet; waiting for the arm.");
+      if (next_reading_) return;
+      ROS_WARN_STREAM("waiting for joint states on " << truth_.getTopic() << " and for " << listeners_
+                                                     << " nodes that listen to " << joy_.getTopic() << ", now "
+                                                     << joy_.getNumSubscribers() << ".");
     });
   }
 
@@ -62,7 +71,7 @@ class SimulatedHumanNode {
   /// The readings are due by the arm's own stamps: then they are the same whatever the machine is busy with.
   void see(const sensor_msgs::JointState& state) {
     const auto now = static_cast<Nanoseconds>(state.header.stamp.toNSec());
-    if (next_reading_ && now < *next_reading_) return;
+    if (next_reading_ ? now < *next_reading_ : joy_.getNumSubscribers() < listeners_) return;
     const std::optional<Eigen::VectorXd> q = positions(state);
     if (!q) {
       ROS_ERROR_STREAM_THROTTLE(kPatience, truth_.getTopic() << " lacks joints of " << model_.description().name
@@ -100,6 +109,7 @@ class SimulatedHumanNode {
 
   RobotModel model_;
   SimulatedHuman human_;
+  std::uint32_t listeners_;
   Nanoseconds period_;
   std::optional<Nanoseconds> next_reading_;
   ros::Publisher joy_;
