@@ -48,7 +48,7 @@ port=$(freePort)
 export ROS_MASTER_URI=http://localhost:$port
 echo "Recording about 20 s of teleoperation (ROS master on port $port)"
 # The human is a required node: roslaunch ends when the task is done, and the recorder closes its file.
-timeout --signal=INT --kill-after=30 180 roslaunch --port "$port" demo_logger demo.launch output_dir:="$demos" \
+timeout --foreground --signal=INT --kill-after=30 180 roslaunch --port "$port" demo_logger demo.launch output_dir:="$demos" \
   "${launch_arguments[@]}" >"$run_folder/demo.log" 2>&1 </dev/null ||
   { tail -n 60 "$run_folder/demo.log" >&2; fail "the demonstration did not come to its end (its log is above)"; }
 

@@ -45,7 +45,7 @@ for space in devel install; do
     rosrun demo_logger demo_tool --help >/dev/null
     port=$(freePort)
     export ROS_MASTER_URI=http://localhost:$port
-    timeout --signal=INT 120 roslaunch --port "$port" demo_logger demo.launch output_dir:="$run_folder/$space" \
+    timeout --foreground --signal=INT 120 roslaunch --port "$port" demo_logger demo.launch output_dir:="$run_folder/$space" \
       >"$run_folder/$space.log" 2>&1 </dev/null || { cat "$run_folder/$space.log" >&2; fail "demo.launch"; }
     demo_tool check "$run_folder/$space/demo_000001.csv"
   )
