@@ -1,8 +1,8 @@
 #include "demo_logger/formats/csv_writer.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 
 namespace demo_logger {
 namespace {
@@ -12,8 +12,7 @@ constexpr std::size_t kLongestCell = 25;
 
 char* writeNumber(char* position, double value) {
   if (!std::isfinite(value)) {
-    std::memcpy(position, "NaN", 3);  // to_chars would print -nan for sqrt(-1)
-    return position + 3;
+    return std::copy_n("NaN", 3, position);  // to_chars would print -nan for sqrt(-1)
   }
   return std::to_chars(position, position + kLongestCell, value).ptr;
 }

@@ -18,6 +18,14 @@ namespace {
 
 constexpr std::size_t kWriteBlock = 1U << 20U;  // bytes
 
+std::string noteOfExtraColumn(const std::string& sidecar, const std::string& name) {
+  return sidecar + ": lists a column " + name + " that the CSV does not have.";
+}
+
+std::string noteOfNewName(const std::filesystem::path& csv, const std::string& original, const std::string& name) {
+  return csv.string() + ": column \"" + original + "\" is called " + name + " from here on.";
+}
+
 // The columns as named in the CSV, described by the sidecar where it lists them, by their names otherwise.
 std::vector<Column> describe(const std::vector<std::string>& names, const std::vector<Column>& listed,
                              const std::string& sidecar, std::vector<std::string>& notes) {
@@ -40,7 +48,7 @@ std::vector<Column> describe(const std::vector<std::string>& names, const std::v
                     " first); their units, roles and interpolation follow from their names.");
   }
   for (const auto& [name, column] : by_name) {
-    notes.push_back(sidecar + ": lists a column " + name + " that the CSV does not have.");
+    notes.push_back(noteOfExtraColumn(sidecar, name));
   }
   return columns;
 }
@@ -129,7 +137,7 @@ LoadedDemonstration readDemonstration(const std::filesystem::path& csv) {
   }
   for (const auto& [name, original] : portable.original_names) {
     demonstration.metadata.original_names[name] = original;
-    loaded.notes.push_back(csv.string() + ": column \"" + original + "\" is called " + name + " from here on.");
+    loaded.notes.push_back(noteOfNewName(csv, original, name));
   }
 
   readRows(reader, demonstration);

@@ -61,19 +61,17 @@ void checkCounters(const Metadata& metadata, Findings& findings) {
   }
 }
 
-void checkStreams(const Metadata& metadata, Findings& findings) {
-  for (const StreamMetadata& stream : metadata.streams) {
-    const std::string title = "stream " + stream.name + (stream.topic.empty() ? "" : " (" + stream.topic + ")") + ": ";
-    const std::string of = " of " + std::to_string(stream.received) + " messages ";
-    if (stream.late > 0) {
-      findings.add("stream", Severity::warning,
-                   title + std::to_string(stream.late) + of +
-                       "came too late for the rows they belong to; a longer max_wait gives them time.");
-    }
-    if (stream.dropped > 0) {
-      findings.add("stream", Severity::warning,
-                   title + std::to_string(stream.dropped) + of + "were dropped; the faults say why.");
-    }
+void checkStream(const StreamMetadata& stream, Findings& findings) {
+  const std::string title = "stream " + stream.name + (stream.topic.empty() ? "" : " (" + stream.topic + ")") + ": ";
+  const std::string of = " of " + std::to_string(stream.received) + " messages ";
+  if (stream.late > 0) {
+    findings.add("stream", Severity::warning,
+                 title + std::to_string(stream.late) + of +
+                     "came too late for the rows they belong to; a longer max_wait gives them time.");
+  }
+  if (stream.dropped > 0) {
+    findings.add("stream", Severity::warning,
+                 title + std::to_string(stream.dropped) + of + "were dropped; the faults say why.");
   }
 }
 
@@ -86,7 +84,9 @@ void checkMetadata(const Metadata& metadata, Findings& findings) {
                      "; its last moments may be missing, so the task may not have been finished.");
   }
   checkCounters(metadata, findings);
-  checkStreams(metadata, findings);
+  for (const StreamMetadata& stream : metadata.streams) {
+    checkStream(stream, findings);
+  }
   for (const Fault& fault : metadata.faults) {
     const bool ends = !fault.what.empty() && (fault.what.back() == '.' || fault.what.back() == '?');
     findings.add("fault", fault.severity,

@@ -151,28 +151,31 @@ std::vector<Jump> jumpsInto(std::size_t row, const Demonstration& demonstration,
   return jumps;
 }
 
+// The first joint's figures stand for all that jump together.
+std::string tell(const std::vector<Jump>& jumps, double period, double time) {
+  std::vector<std::string> names;
+  names.reserve(jumps.size());
+  for (const Jump& jump : jumps) {
+    names.push_back(jump.joint->name);
+  }
+  const Jump& first = jumps.front();
+  const std::string& unit = first.joint->unit;
+  const bool wraps = unit == "rad" && std::abs(std::abs(first.step) - kFullTurn) < first.plausible;
+  return "joint " + formatNames(names) + (names.size() == 1 ? " jumps" : " jump") + " by " + formatNumber(first.step) +
+         " " + unit + " within " + formatDuration(period) + " " + formatInstant(time) + ", expected at most " +
+         formatNumber(first.plausible) + " " + unit + " at a velocity of " + formatNumber(first.speed) + " " + unit +
+         "/s; " +
+         (wraps ? "the angle wraps around by a full turn." : "was the encoder reset, or are two robots' states mixed?");
+}
+
 void checkJumps(const Demonstration& demonstration, const std::vector<JointColumns>& joints,
                 const CheckSummary& summary, const CheckLimits& limits, Findings& findings) {
-  for (std::size_t row = 1; row < demonstration.time.size(); ++row) {
+  const std::vector<double>& time = demonstration.time;
+  for (std::size_t row = 1; row < time.size(); ++row) {
     const std::vector<Jump> jumps = jumpsInto(row, demonstration, joints, summary, limits);
-    if (jumps.empty()) {
-      continue;
+    if (!jumps.empty()) {
+      findings.add("jump", Severity::error, tell(jumps, time[row] - time[row - 1], time[row]));
     }
-    std::vector<std::string> names;
-    for (const Jump& jump : jumps) {
-      names.push_back(jump.joint->name);
-    }
-    const Jump& first = jumps.front();
-    const std::string& unit = first.joint->unit;
-    const bool wraps = unit == "rad" && std::abs(std::abs(first.step) - kFullTurn) < first.plausible;
-    findings.add("jump", Severity::error,
-                 "joint " + formatNames(names) + (names.size() == 1 ? " jumps" : " jump") + " by " +
-                     formatNumber(first.step) + " " + unit + " within " +
-                     formatDuration(demonstration.time[row] - demonstration.time[row - 1]) + " " +
-                     formatInstant(demonstration.time[row]) + ", expected at most " + formatNumber(first.plausible) +
-                     " " + unit + " at a velocity of " + formatNumber(first.speed) + " " + unit + "/s; " +
-                     (wraps ? "the angle wraps around by a full turn."
-                            : "was the encoder reset, or are two robots' states mixed?"));
   }
 }
 
