@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "demo_logger/trajectory/interpolation.h"
@@ -23,7 +25,10 @@ void interpolate(const Entry& before, const Entry& after, const AlignmentRule& r
   const double fraction = fractionBetween(before.first, instant, after.first);
   const std::vector<double>& from = before.second.values;
   const std::vector<double>& to = after.second.values;
-  for (std::size_t i = 0; i < rule.width; ++i) values[i] = interpolateLinearly(from[i], to[i], fraction);
+  for (std::size_t i = 0; i < rule.width; ++i) {
+    const double value = interpolateLinearly(from[i], to[i], fraction);
+    values[i] = std::isfinite(value) ? value : kNaN;  // neighbours near the limits of double overflow
+  }
   if (rule.orientation) {
     const std::size_t first = *rule.orientation;
     Eigen::Map<Eigen::Vector4d>(values + first) = interpolateSpherically(
@@ -66,9 +71,32 @@ Chosen chooseFrom(StreamBuffer& buffer, const AlignmentRule& rule, Nanoseconds i
   return {nullptr, nullptr, false, kNaN};
 }
 
-bool decides(Nanoseconds newest, Alignment alignment, Nanoseconds instant) {
-  // The last message held is that at the instant itself until a later one shows that none replaces it.
-  return alignment == Alignment::hold ? newest > instant : newest >= instant;
+Reach reachOf(Nanoseconds effective, const StreamBuffer& buffer, const AlignmentRule& rule) {
+  constexpr Nanoseconds kBeginning = std::numeric_limits<Nanoseconds>::min();
+  constexpr Nanoseconds kEnd = std::numeric_limits<Nanoseconds>::max();
+  const StreamBuffer::Messages& messages = buffer.messages();
+  const auto next = messages.upper_bound(effective);
+  const auto not_before = messages.lower_bound(effective);
+  const bool is_last = next == messages.end();
+  const bool is_first = not_before == messages.begin();
+  const Nanoseconds after = is_last ? kEnd : next->first;
+  const Nanoseconds before = is_first ? kBeginning : std::prev(not_before)->first;
+  switch (rule.alignment) {
+    case Alignment::hold:
+      return {effective, after};
+    case Alignment::linear: {
+      const bool bridges_back = !is_first && effective - before <= rule.max_gap;
+      const bool bridges_on = !is_last && after - effective <= rule.max_gap;
+      // One that takes the place of another leaves the age as it is, so across a gap it changes nothing.
+      const bool replaces = not_before != next;
+      return {bridges_back ? before + 1 : effective, bridges_on || !replaces ? after : effective + 1};
+    }
+    case Alignment::nearest:
+      // Of two equally close the earlier is taken, so a row in the very middle belongs to the earlier neighbour.
+      return {is_first ? kBeginning : before + (effective - before) / 2 + 1,
+              is_last ? kEnd : effective + (after - effective) / 2 + 1};
+  }
+  return {effective, after};
 }
 
 }  // namespace demo_logger

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "demo_logger/recording/stream_configuration.h"
 #include "stream_buffer.h"
 
 namespace demo_logger {
@@ -27,7 +28,13 @@ struct Chosen {
 /// Writes the values of a row at `instant` into values[0 … width), NaN where the rule gives none.
 Chosen chooseFrom(StreamBuffer& buffer, const AlignmentRule& rule, Nanoseconds instant, double* values);
 
-/// Whether no message that continues an ordered stream can change the row at `instant`.
-bool decides(Nanoseconds newest, Alignment alignment, Nanoseconds instant);
+/// Row times, `begin` included and `end` not.
+struct Reach {
+  Nanoseconds begin = 0;
+  Nanoseconds end = 0;
+};
+
+/// The rows whose values or age change when a message at `effective` joins those of `buffer`.
+Reach reachOf(Nanoseconds effective, const StreamBuffer& buffer, const AlignmentRule& rule);
 
 }  // namespace demo_logger

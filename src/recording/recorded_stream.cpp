@@ -189,7 +189,7 @@ void RecordedStream::watchFrame(const Arrival& arrival) {
 void RecordedStream::insert(Nanoseconds effective, StreamMessage message, const DecidedRows& decided,
                             Nanoseconds receipt) {
   if (!left_out_) {
-    const StreamBuffer::Reach reach = buffer_.reachOf(effective, rule_.alignment);
+    const Reach reach = reachOf(effective, buffer_, rule_);
     if (decided.anyWithin(reach.begin, reach.end)) ++late_;
   }
   if (buffer_.insert(effective, std::move(message))) return;
@@ -234,7 +234,8 @@ void RecordedStream::write(Nanoseconds instant, Nanoseconds receipt, std::uint64
 }
 
 bool RecordedStream::decides(Nanoseconds instant) const {
-  return configuration_.in_order && newest_ && demo_logger::decides(*newest_, rule_.alignment, instant);
+  // A message at the instant itself decides too: one with the same stamp would be out of order.
+  return configuration_.in_order && newest_ && *newest_ >= instant;
 }
 
 void RecordedStream::beginEpisode() {
@@ -246,12 +247,15 @@ void RecordedStream::beginEpisode() {
 }
 
 void RecordedStream::restartClock(std::uint64_t first, bool keep_unstamped) {
+  const bool void_too = !keep_unstamped && isPlacedByReceipt();
   StreamBuffer::Messages kept = buffer_.extractSince(first);
   buffer_.clear();
   newest_.reset();
-  if (!keep_unstamped && isPlacedByReceipt()) return;
+  publishers_.forgetHeard();
+  if (void_too) return;
   for (auto& [effective, message] : kept) {
     newest_ = effective;
+    publishers_.hear(message.publisher);
     buffer_.insert(effective, std::move(message));
   }
 }

@@ -188,30 +188,26 @@ void Sequencer::dropSuspect() {
 void Sequencer::followJump(JointRow row, RowListener& listener) {
   JointRow first = std::move(*suspect_);
   suspect_.reset();
-  // Messages of the new clock came after `first` if at all; the rows before it are finished without them.
-  const bool was_started = started_;
-  if (was_started) {
+  if (started_) {
+    freezeOffset(now_);
     decideAll();
     release(listener, /*open_now=*/true);
     close();
+    listener.clockJumped(first.stamp, toSeconds(clock_watch_.jump()));
   }
   offset_ = ClockOffset();
   const bool keep_unstamped = !configuration_.correct_clock_offset;
   for (RecordedStream& stream : streams_) stream.restartClock(first.sequence, keep_unstamped);
   joint_states_.restartClock(first.sequence);
   pruned_to_ = kBeginningOfTime;
-  if (was_started) {
-    listener.clockJumped(first.stamp, toSeconds(clock_watch_.jump()));
-    startIfReached(first.received - 1);
-  }
   accept(std::move(first), listener);
   accept(std::move(row), listener);
 }
 
 void Sequencer::accept(JointRow row, RowListener& listener) {
   offset_.add(row.received, row.stamped ? row.receipt - row.stamp : 0);
-  const bool requested = started_ && (row.received > request_->receipt || request_->clock_setting != clock_setting_);
-  if (requested) admit(std::move(row), listener);
+  startIfReached(row.received - 1);
+  if (started_) admit(std::move(row), listener);
   prune();
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 namespace demo_logger {
@@ -33,28 +32,6 @@ StreamBuffer::Neighbours StreamBuffer::around(Nanoseconds instant) {
   if (after != messages_.end()) neighbours.after = &*after;
   if (after != messages_.begin()) neighbours.at_or_before = &*std::prev(after);
   return neighbours;
-}
-
-StreamBuffer::Reach StreamBuffer::reachOf(Nanoseconds effective, Alignment alignment) const {
-  constexpr Nanoseconds kForever = std::numeric_limits<Nanoseconds>::max();
-  const auto next = messages_.upper_bound(effective);
-  const auto not_before = messages_.lower_bound(effective);
-  const Nanoseconds end = next == messages_.end() ? kForever : next->first;
-  const bool first = not_before == messages_.begin();
-  const Nanoseconds previous = first ? std::numeric_limits<Nanoseconds>::min() : std::prev(not_before)->first;
-  switch (alignment) {
-    case Alignment::hold:
-      return {effective, end};
-    case Alignment::linear:
-      // Before the first message there is nothing to interpolate from: an even earlier one decides only its own
-      // instant.
-      return {first ? effective : previous + 1, end};
-    case Alignment::nearest:
-      // Of two equally close the earlier is taken: a row in the very middle belongs to the earlier neighbour.
-      return {first ? previous : previous + (effective - previous) / 2 + 1,
-              end == kForever ? end : effective + (end - effective) / 2 + 1};
-  }
-  return {effective, end};
 }
 
 void StreamBuffer::prune(Nanoseconds horizon) {

@@ -3,10 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <vector>
 
-#include "demo_logger/recording/stream_configuration.h"
 #include "demo_logger/trajectory/stamp.h"
 
 namespace demo_logger {
@@ -36,13 +34,6 @@ class StreamBuffer {
     Messages::value_type* after = nullptr;
   };
   Neighbours around(Nanoseconds instant);
-
-  /// The row times [begin, end) that a message at `effective` decides under `alignment`, beside those already held.
-  struct Reach {
-    Nanoseconds begin;
-    Nanoseconds end;
-  };
-  Reach reachOf(Nanoseconds effective, Alignment alignment) const;
 
   /// Forgets what no row at or after `horizon` can ask for.
   void prune(Nanoseconds horizon);

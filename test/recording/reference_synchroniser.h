@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "demo_logger/recording/stream_configuration.h"
@@ -28,7 +29,7 @@ struct ReferenceRow {
 };
 
 struct ReferenceResult {
-  std::vector<ReferenceRow> rows;
+  std::vector<ReferenceRow> rows;  // in the order of their stamps
   std::size_t late = 0;
   std::size_t duplicates = 0;
 };
@@ -73,6 +74,26 @@ struct ReferenceSynchroniser {
     return result;
   }
 
+  /// How many messages of a stream came after the wait of a row that they would have changed.
+  std::size_t countLate(std::size_t stream, const std::vector<ReferenceRow>& rows) const {
+    std::size_t late = 0;
+    std::map<Nanoseconds, double> known;
+    for (const ReferenceMessage& message : streams[stream]) {
+      std::map<Nanoseconds, double> with = known;
+      with[message.effective] = message.value;
+      bool changes = false;
+      for (const ReferenceRow& row : rows) {
+        if (row.receipt + wait >= message.receipt) continue;
+        const Aligned before = align(known, alignments[stream], row.stamp);
+        const Aligned after = align(with, alignments[stream], row.stamp);
+        changes = changes || differ(before.value, after.value) || differ(before.age, after.age);
+      }
+      if (changes) ++late;
+      known = with;
+    }
+    return late;
+  }
+
  private:
   ReferenceRow fill(const ReferenceMessage& joint_state) const {
     ReferenceRow row{joint_state.effective, joint_state.receipt, joint_state.value, {}};
@@ -87,6 +108,8 @@ struct ReferenceSynchroniser {
     }
     return row;
   }
+
+  static bool differ(double one, double other) { return !(one == other || (std::isnan(one) && std::isnan(other))); }
 
   struct Aligned {
     double value = std::numeric_limits<double>::quiet_NaN();

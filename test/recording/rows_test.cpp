@@ -96,6 +96,7 @@ TEST(RowsTest, StreamsThatPromiseOrderReleaseRowsEarly) {
   session.advance(13.0);
   EXPECT_EQ(positionsOf(session), Positions({1.0}));
   EXPECT_EQ(session.listener.at(0, "s0_value"), 1.0);
+  EXPECT_EQ(session.listener.at(0, "s1_value"), 1.0);
 }
 
 TEST(RowsTest, WithoutStreamsRowsStillWaitForReorderedJointStates) {
@@ -141,7 +142,7 @@ TEST(RowsTest, AMessagePushedBehindTheWatermarkCountsAsReceivedJustAfterIt) {
   session.elbow(0.0, 0.0, /*receipt_ms=*/0.0);
   session.elbow(1.0, 1.0, /*receipt_ms=*/1.0);
   session.advance(100.0);  // the first row is final
-  session.number(0, -5.0, 3.0, /*receipt_ms=*/0.0);
+  session.number(0, -5.0, 3.0, /*receipt_ms=*/100.0);
   session.end(500.0);
   EXPECT_TRUE(session.listener.at(0, "s0_value") != 3.0);
   EXPECT_EQ(session.listener.at(1, "s0_value"), 3.0);

@@ -119,8 +119,8 @@ inline RecordingListener runAtOnce(const Scenario& scenario) {
   return runAtOnce(synchroniser, scenario.events, scenario.end);
 }
 
-/// What the reference makes of the scenario.
-inline ReferenceResult runReference(const Scenario& scenario) {
+/// The reference for the streams of the scenario.
+inline ReferenceSynchroniser makeReference(const Scenario& scenario) {
   ReferenceSynchroniser reference;
   Nanoseconds largest_latency = 0;
   for (const StreamConfiguration& stream : scenario.configuration.streams) {
@@ -130,18 +130,30 @@ inline ReferenceResult runReference(const Scenario& scenario) {
   reference.wait = fromSeconds(scenario.configuration.max_wait) + largest_latency;
   reference.max_gap = fromSeconds(scenario.configuration.max_gap);
   reference.streams.resize(scenario.configuration.streams.size());
+  for (const Event& event : scenario.events) {
+    if (!event.stream) continue;
+    const Arrival& arrival = event.arrival();
+    const Nanoseconds latency = fromSeconds(scenario.configuration.streams[*event.stream].latency);
+    reference.streams[*event.stream].push_back(
+        {arrival.stamp - latency, arrival.receipt, std::get<StreamSample>(event.sample).values[0]});
+  }
+  return reference;
+}
+
+/// The joint states of the scenario that were received in (begin, end].
+inline std::vector<ReferenceMessage> jointStatesOf(const Scenario& scenario, Nanoseconds begin, Nanoseconds end) {
   std::vector<ReferenceMessage> joint_states;
   for (const Event& event : scenario.events) {
     const Arrival& arrival = event.arrival();
-    if (event.stream) {
-      const Nanoseconds latency = fromSeconds(scenario.configuration.streams[*event.stream].latency);
-      reference.streams[*event.stream].push_back(
-          {arrival.stamp - latency, arrival.receipt, std::get<StreamSample>(event.sample).values[0]});
-    } else {
-      joint_states.push_back({arrival.stamp, arrival.receipt, std::get<JointStateSample>(event.sample).position[0]});
-    }
+    if (event.stream || arrival.receipt <= begin || arrival.receipt > end) continue;
+    joint_states.push_back({arrival.stamp, arrival.receipt, std::get<JointStateSample>(event.sample).position[0]});
   }
-  return reference.run(joint_states);
+  return joint_states;
+}
+
+/// What the reference makes of the scenario.
+inline ReferenceResult runReference(const Scenario& scenario) {
+  return makeReference(scenario).run(jointStatesOf(scenario, 0, scenario.end));
 }
 
 }  // namespace demo_logger::testing_support

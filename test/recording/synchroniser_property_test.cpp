@@ -32,11 +32,11 @@ std::vector<StreamConfiguration> allAlignments(ScenarioMaker& maker) {
   return streams;
 }
 
-Scenario makeScenario(unsigned seed, Trouble trouble = {}) {
-  ScenarioMaker maker(seed, trouble);
+Scenario makeScenario(unsigned seed, Nanoseconds duration = kDuration) {
+  Trouble trouble;
   if (seed % 3 == 0) trouble.receipt_step = 5 * kMillisecond;
-  ScenarioMaker troubled(seed, trouble);
-  return troubled.make(allAlignments(maker), kDuration);
+  ScenarioMaker maker(seed, trouble);
+  return maker.make(allAlignments(maker), duration);
 }
 
 void expectEqual(double found, double expected, const char* what) {
@@ -89,6 +89,23 @@ TEST(SynchroniserPropertyTest, EveryRowHoldsWhatThePlainRulesSay) {
     EXPECT_EQ(counters.at("pushed_late"), 0U);
   }
   EXPECT_GT(compared, 100'000U) << "the scenarios should have something to compare";
+}
+
+TEST(SynchroniserPropertyTest, AMessageIsLateIfItWouldHaveChangedARowThatWasDecided) {
+  std::size_t late = 0;
+  for (unsigned seed = 0; seed < kScenarios; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Scenario scenario = makeScenario(seed, /*duration=*/kNanosecondsPerSecond / 2);
+    Synchroniser synchroniser(scenario.configuration);
+    runAtOnce(synchroniser, scenario.events, scenario.end);
+    const ReferenceSynchroniser reference = makeReference(scenario);
+    const std::vector<ReferenceRow> rows = runReference(scenario).rows;
+    for (std::size_t i = 0; i < scenario.configuration.streams.size(); ++i) {
+      EXPECT_EQ(synchroniser.streams()[i].late, reference.countLate(i, rows)) << scenario.configuration.streams[i].name;
+      late += synchroniser.streams()[i].late;
+    }
+  }
+  EXPECT_GT(late, 500U) << "the scenarios should have late messages";
 }
 
 TEST(SynchroniserPropertyTest, HoldNeverTakesACommandFromTheFuture) {
@@ -149,26 +166,30 @@ TEST(SynchroniserPropertyTest, RowsDoNotDependOnTheOrderOfThePushes) {
   }
 }
 
+/// Pushes the messages as they are received, and raises the watermark now and then as far as is true.
+RecordingListener runInSteps(const Scenario& scenario, unsigned seed) {
+  std::mt19937 random(seed);
+  Synchroniser synchroniser(scenario.configuration);
+  RecordingListener listener;
+  synchroniser.begin(0);
+  for (std::size_t i = 0; i < scenario.events.size(); ++i) {
+    push(synchroniser, scenario.events[i]);
+    if (random() % 4 != 0) continue;
+    const Nanoseconds here = scenario.events[i].arrival().receipt;
+    const Nanoseconds next = i + 1 < scenario.events.size() ? scenario.events[i + 1].arrival().receipt : scenario.end;
+    if (next == here) continue;
+    synchroniser.advance(here + static_cast<Nanoseconds>(random() % static_cast<std::uint64_t>(next - here)), listener);
+  }
+  synchroniser.end(scenario.end, listener);
+  EXPECT_EQ(synchroniser.counters().at("pushed_late"), 0U);
+  return listener;
+}
+
 TEST(SynchroniserPropertyTest, RowsDoNotDependOnWhenTheWatermarkIsRaised) {
   for (unsigned seed = 0; seed < kScenarios; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Scenario scenario = makeScenario(seed);
-    std::mt19937 random(seed);
-    Synchroniser synchroniser(scenario.configuration);
-    RecordingListener listener;
-    synchroniser.begin(0);
-    for (std::size_t i = 0; i < scenario.events.size(); ++i) {
-      push(synchroniser, scenario.events[i]);
-      if (random() % 4 != 0) continue;
-      const Nanoseconds here = scenario.events[i].arrival().receipt;
-      const Nanoseconds next = i + 1 < scenario.events.size() ? scenario.events[i + 1].arrival().receipt : scenario.end;
-      if (next == here) continue;
-      synchroniser.advance(here + static_cast<Nanoseconds>(random() % static_cast<std::uint64_t>(next - here)),
-                           listener);
-    }
-    synchroniser.end(scenario.end, listener);
-    expectSameRows(runAtOnce(scenario), listener);
-    EXPECT_EQ(synchroniser.counters().at("pushed_late"), 0U);
+    expectSameRows(runAtOnce(scenario), runInSteps(scenario, seed));
   }
 }
 
@@ -184,7 +205,8 @@ TEST(SynchroniserPropertyTest, EarlyReleaseChangesNoRow) {
     Scenario early = maker.make(std::move(streams), kDuration);
     Scenario waiting = early;
     for (StreamConfiguration& stream : waiting.configuration.streams) stream.in_order = false;
-    expectSameRows(runAtOnce(early), runAtOnce(waiting));
+    expectSameRows(runAtOnce(waiting), runAtOnce(early));
+    expectSameRows(runAtOnce(waiting), runInSteps(early, seed));
   }
 }
 
@@ -232,20 +254,7 @@ TEST(SynchroniserPropertyTest, RowsOfAnEpisodeAreThoseReceivedBetweenItsRequests
     for (const Event& event : scenario.events) push(synchroniser, event);
     synchroniser.end(end, listener);
 
-    std::vector<ReferenceMessage> inside;
-    for (const Event& event : scenario.events) {
-      const Arrival& arrival = event.arrival();
-      if (!event.stream && arrival.receipt > begin && arrival.receipt <= end) {
-        inside.push_back({arrival.stamp, arrival.receipt, 0.0});
-      }
-    }
-    ReferenceSynchroniser reference;
-    reference.wait = fromSeconds(scenario.configuration.max_wait);
-    for (const StreamConfiguration& stream : scenario.configuration.streams) {
-      reference.wait =
-          std::max(reference.wait, fromSeconds(scenario.configuration.max_wait) + fromSeconds(stream.latency));
-    }
-    const ReferenceResult expected = reference.run(inside);
+    const ReferenceResult expected = makeReference(scenario).run(jointStatesOf(scenario, begin, end));
     ASSERT_EQ(listener.rows().size(), expected.rows.size());
     for (std::size_t i = 0; i < expected.rows.size(); ++i) EXPECT_EQ(listener.rows()[i].stamp, expected.rows[i].stamp);
   }
