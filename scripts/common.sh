@@ -4,8 +4,8 @@
 project=$(cd -P "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 # Debian's ROS needs no setup file. Whatever workspace, master or Python environment the caller has active stays out.
-unset ROS_MASTER_URI ROS_PACKAGE_PATH ROS_IP ROS_NAMESPACE ROS_ROOT CMAKE_PREFIX_PATH PYTHONPATH PYTHONHOME \
-  ROSLAUNCH_SSH_UNKNOWN DISPLAY_ROS_LOG
+unset ROS_MASTER_URI ROS_PACKAGE_PATH ROS_IP ROS_NAMESPACE CMAKE_PREFIX_PATH PKG_CONFIG_PATH LD_LIBRARY_PATH \
+  PYTHONPATH PYTHONHOME
 export PATH="/usr/bin:/bin:$PATH"
 export ROS_HOSTNAME=localhost
 
@@ -24,11 +24,11 @@ openRunFolder() {
 # Processes of this run other than this shell, by what they inherited in their environment.
 processesOfThisRun() {
   local environment pid
-  for environment in $(grep -lsz "^DEMO_LOGGER_RUN_FOLDER=$run_folder\$" /proc/[0-9]*/environ); do
+  while read -r environment; do
     pid=${environment#/proc/}
     pid=${pid%/environ}
-    [ "$pid" = $$ ] || [ "$pid" = "${BASHPID:-}" ] || ! kill -0 "$pid" 2>/dev/null || echo "$pid"
-  done
+    [ "$pid" = $$ ] || [ "$pid" = "$BASHPID" ] || ! kill -0 "$pid" 2>/dev/null || echo "$pid"
+  done < <(grep -lsz "^DEMO_LOGGER_RUN_FOLDER=$run_folder\$" /proc/[0-9]*/environ)
 }
 
 # Ends whatever the run left behind, politely first; says nothing.

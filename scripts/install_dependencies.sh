@@ -1,5 +1,6 @@
 #!/bin/bash
 # Installs the Debian packages that demo_logger needs and that are missing. This file is their only list.
+# shellcheck disable=SC2034  # the lists are used by name
 set -euo pipefail
 
 usage() {

@@ -85,8 +85,7 @@ status=0
 
 left_behind=$(processesOfThisRun)
 if [ -n "$left_behind" ]; then
-  # shellcheck disable=SC2086
-  ps -o pid=,args= -p $(echo $left_behind | tr ' ' ,) >&2 || true
+  ps -o pid=,args= -p "${left_behind//$'\n'/,}" >&2 || true
   echo "test.sh: the processes above outlived the tests that started them" >&2
   status=1
 fi
