@@ -85,7 +85,9 @@ status=0
 
 left_behind=$(processesOfThisRun)
 if [ -n "$left_behind" ]; then
-  ps -o pid=,args= -p "${left_behind//$'\n'/,}" >&2 || true
+  for pid in $left_behind; do
+    { tr '\0' ' ' <"/proc/$pid/cmdline" && echo; } >&2 || true
+  done
   echo "test.sh: the processes above outlived the tests that started them" >&2
   status=1
 fi
