@@ -83,7 +83,12 @@ rm -rf "$tree/test_results"
 status=0
 (cd "$tree" && "${runner[@]}" ctest --output-on-failure --parallel "$jobs" "${ctest_arguments[@]}" </dev/null) || status=$?
 
-left_behind=$(processesOfThisRun)
+# A node that has just been told to end may need a moment.
+for _ in 1 2 3 4 5 6 7 8 9 10; do
+  left_behind=$(processesOfThisRun)
+  [ -n "$left_behind" ] || break
+  sleep 0.3
+done
 if [ -n "$left_behind" ]; then
   for pid in $left_behind; do
     { tr '\0' ' ' <"/proc/$pid/cmdline" && echo; } >&2 || true
