@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <regex>
 #include <set>
 
 namespace demo_logger {
@@ -63,9 +62,11 @@ RC_GTEST_PROP(ColumnNamesTest, AllNamesArePortableAndUnique, ()) {
   const Names names = makePortable(originals).names;
   RC_ASSERT(names.size() == originals.size());
   RC_ASSERT(std::set<std::string>(names.begin(), names.end()).size() == names.size());
-  const std::regex pattern("[A-Za-z_][A-Za-z0-9_]{0,62}");
+  const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_";
   for (const std::string& name : names) {
-    RC_ASSERT(std::regex_match(name, pattern));
+    RC_ASSERT(name.size() >= 1U && name.size() <= 63U);
+    RC_ASSERT(letters.find(name[0]) != std::string::npos);
+    RC_ASSERT(name.find_first_not_of(letters + "0123456789") == std::string::npos);
     RC_ASSERT(isPortable(name));
     RC_ASSERT(name != "time");
   }
