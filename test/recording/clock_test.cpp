@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "session.h"
 
@@ -77,8 +78,16 @@ class RestartingListener : public RecordingListener {
   explicit RestartingListener(Synchroniser& synchroniser) : synchroniser_(synchroniser) {}
   void clockJumped(Nanoseconds stamp, double seconds) override {
     RecordingListener::clockJumped(stamp, seconds);
+    rows_before = synchroniser_.counters().at("rows");
+    offset_before = synchroniser_.clockOffset();
+    received_before = synchroniser_.streams().at(0).received;
     synchroniser_.begin(0);
   }
+
+  // Of the episode that the jump ended.
+  std::size_t rows_before = 0;
+  std::optional<double> offset_before;
+  std::size_t received_before = 0;
 
  private:
   Synchroniser& synchroniser_;
@@ -110,6 +119,58 @@ TEST_F(ClockTest, WhatWasReceivedBeforeAJumpServesNoRowAfterIt) {
   EXPECT_EQ(listener.episodes[0].rows[0].values[4], 1.0);
   EXPECT_TRUE(std::isnan(listener.episodes[1].rows[0].values[4])) << "not the command of a clock that is gone";
   EXPECT_EQ(listener.episodes[1].rows[1].values[4], 2.0) << "what came on the new clock is kept";
+}
+
+TEST_F(ClockTest, DuringAJumpTheEndedEpisodeCanStillBeAskedAbout) {
+  RestartingListener listener(session_.synchroniser);
+  session_.begin();
+  session_.number(0, 0.0, 1.0);
+  joint(0.0, 3.0);
+  joint(10.0, 13.0);
+  joint(5000.0, 21.0);
+  joint(5010.0, 31.0);
+  session_.synchroniser.advance(at(40.0), listener);
+  EXPECT_EQ(listener.rows_before, 2U);
+  EXPECT_EQ(listener.received_before, 1U);
+  ASSERT_TRUE(listener.offset_before.has_value()) << "frozen with what there is";
+  EXPECT_DOUBLE_EQ(*listener.offset_before, 0.003);
+  session_.synchroniser.end(at(500.0), listener);
+  EXPECT_EQ(session_.counter("rows"), 2U);
+  EXPECT_EQ(session_.synchroniser.streams()[0].received, 0U);
+  EXPECT_DOUBLE_EQ(*session_.synchroniser.clockOffset(), -4.979) << "measured anew";
+}
+
+TEST_F(ClockTest, MergedJointsOfTheOldClockServeNoRowAfterAJump) {
+  SynchroniserConfiguration configuration = numberStreams({Alignment::hold});
+  configuration.joints = {"shoulder", "wrist"};
+  configuration.merge_joint_states = true;
+  Session session(configuration);
+  RestartingListener listener(session.synchroniser);
+  session.begin();
+  session.joint(0.0, {"shoulder"}, {1.0}, 1.0);
+  session.joint(10.0, {"wrist"}, {10.0}, 2.0);
+  session.joint(-4996.0, {"shoulder"}, {1.0}, 3.0);
+  session.joint(-4995.0, {"wrist"}, {20.0}, 4.0);
+  session.joint(-4994.0, {"shoulder"}, {2.0}, 5.0);
+  session.joint(-4993.0, {"wrist"}, {22.0}, 6.0);
+  session.synchroniser.end(at(500.0), listener);
+  ASSERT_EQ(listener.episodes.size(), 2U);
+  EXPECT_TRUE(std::isnan(listener.at(0, "q_wrist")));
+  EXPECT_TRUE(std::isnan(listener.at(0, "wrist_age")));
+  EXPECT_EQ(listener.at(1, "q_wrist"), 21.0) << "between −4995 ms and −4993 ms";
+}
+
+TEST_F(ClockTest, WhenTheMachinesClockIsSetBackAnEpisodeDoesNotWaitLongerForItsColumns) {
+  SynchroniserConfiguration configuration;
+  configuration.streams.push_back(makeStream("stick", StreamType::joy));
+  Session session(configuration);
+  session.begin();
+  session.elbow(0.0, 0.0, 1.0);
+  session.advance(500.0);
+  EXPECT_TRUE(session.listener.episodes.empty());
+  session.advance(-3'000'000.0);
+  session.advance(-2'999'990.0);
+  EXPECT_EQ(session.listener.rows().size(), 1U);
 }
 
 TEST_F(ClockTest, ASingleOutlierIsDroppedAndCounted) {
