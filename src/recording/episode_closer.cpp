@@ -25,7 +25,8 @@ ClosedEpisode closeEpisode(std::unique_ptr<EpisodeWriter> writer, const Metadata
   } catch (const FileError& error) {
     closed.error = error.what();
   }
-  closed.rows = writer->rows() - writer->rowsNotWritten();
+  closed.not_written = writer->rowsNotWritten();
+  closed.rows = writer->rows() - closed.not_written;
   return closed;
 }
 

@@ -17,10 +17,11 @@ namespace demo_logger {
 /// An episode that has been saved, or could not be.
 struct ClosedEpisode {
   std::string id;
-  std::filesystem::path file;  // empty: it had no row, or failed
-  std::uint64_t rows = 0;
-  double duration = 0.0;       // [s]
-  Nanoseconds last_stamp = 0;  // of its last row
+  std::filesystem::path file;     // empty: it had no row, or failed
+  std::uint64_t rows = 0;         // in the file
+  std::uint64_t not_written = 0;  // rows that found no room
+  double duration = 0.0;          // [s]
+  Nanoseconds last_stamp = 0;     // of its last row
   std::string error;
 };
 

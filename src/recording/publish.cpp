@@ -1,6 +1,8 @@
 #include "publish.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 
 #include "demo_logger/trajectory/error.h"
 #include "episode_name.h"
@@ -10,7 +12,12 @@ namespace demo_logger {
 std::filesystem::path publish(FileSystem& file_system, const std::filesystem::path& directory, const std::string& id,
                               SidecarFile& sidecar, const std::function<std::string(const std::string& id)>& text) {
   std::filesystem::path data = partFiles(directory, id).data;
-  for (std::string final_id = id;; final_id = episodeId(nextEpisodeNumber(directory))) {
+  std::uint64_t number = 0;
+  const auto nextId = [&] {
+    number = std::max(number + 1, nextEpisodeNumber(directory));  // also where the directory cannot be listed
+    return episodeId(number);
+  };
+  for (std::string final_id = id;; final_id = nextId()) {
     const EpisodeFiles finals = finalFiles(directory, final_id);
     if (file_system.exists(finals.data) || file_system.exists(finals.sidecar)) {
       continue;

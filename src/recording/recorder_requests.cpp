@@ -70,8 +70,10 @@ Reply Recorder::Implementation::end(Nanoseconds now) {
   if (!saved.error.empty()) {
     return failure(saved.error);
   }
-  return success("Saved " + saved.id + " with " + std::to_string(saved.rows) + " rows.", saved.id, saved.file,
-                 saved.rows);
+  const std::string missing =
+      saved.not_written == 0 ? "" : ", " + std::to_string(saved.not_written) + " more found no room on the disk";
+  return success("Saved " + saved.id + " with " + std::to_string(saved.rows) + " rows" + missing + ".", saved.id,
+                 saved.file, saved.rows);
 }
 
 std::string Recorder::Implementation::whyNoRow(const std::string& id) const {

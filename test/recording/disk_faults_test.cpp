@@ -129,6 +129,34 @@ TEST_F(DiskFaultsTest, RowsBeyondTheBoundedQueueAreCountedAsNotWritten) {
   EXPECT_EQ(savedMetadata().counters.at("rows_not_written"), 30U);
 }
 
+TEST_F(DiskFaultsTest, GivingRowsNeverWaitsForADiskThatHangs) {
+  disk_.writes_hang = true;
+  disk_.syncs_hang = true;
+  const auto writer = makeWriter(options());
+  for (std::uint64_t k = 0; k < 10000; ++k) {
+    writer->write(knownRow(k));  // were one of them to wait for the disk, this would never end
+    writer->update(Metadata{});
+  }
+  EXPECT_EQ(writer->rows(), 10000U);
+  EXPECT_EQ(writer->bytes(), 0U);
+  EXPECT_FALSE(writer->fault());
+  disk_.writes_hang = false;
+  disk_.syncs_hang = false;
+  expectKnownRows(readTable(writer->finish(Metadata{})), 0, 10000);
+}
+
+TEST_F(DiskFaultsTest, ASyncThatHangsDelaysNoWrite) {
+  disk_.syncs_hang = true;
+  const auto writer = makeWriter(options());
+  std::uint64_t bytes = 0;
+  for (std::uint64_t k = 0; k < 20; ++k) {
+    writer->write(knownRow(k));
+    EXPECT_TRUE(eventually([&] { return writer->bytes() > bytes; })) << "row " << k << " waits for the sync";
+    bytes = writer->bytes();
+  }
+  disk_.syncs_hang = false;
+}
+
 TEST_F(DiskFaultsTest, AnEpisodeOfWhichNothingCouldBeWrittenSaysSoAndLeavesNothing) {
   disk_.room = 0;
   const auto writer = makeWriter(options());

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <limits>
+#include <thread>
 
 #include "src/recording/file_system.h"
 
@@ -19,11 +21,14 @@ class FaultyFileSystem : public FileSystem {
   std::atomic<int> write_error{0};
   std::atomic<int> sync_error{0};
   std::atomic<int> rename_error{0};
+  std::atomic<bool> writes_hang{false};  // until it is false again
+  std::atomic<bool> syncs_hang{false};
   std::atomic<int> writes{0};
   std::atomic<int> refusals{0};
 
   ssize_t write(int descriptor, const char* bytes, std::size_t size, off_t offset) override {
     const int count = ++writes;
+    waitWhile(writes_hang);
     if (interrupts && count % 2 == 1) {
       return -EINTR;
     }
@@ -44,12 +49,22 @@ class FaultyFileSystem : public FileSystem {
   int reserve(int descriptor, off_t size) override {
     return room <= 0 ? -ENOSPC : FileSystem::reserve(descriptor, size);
   }
-  int syncData(int descriptor) override { return sync_error != 0 ? -sync_error : FileSystem::syncData(descriptor); }
+  int syncData(int descriptor) override {
+    waitWhile(syncs_hang);
+    return sync_error != 0 ? -sync_error : FileSystem::syncData(descriptor);
+  }
   int rename(const std::filesystem::path& from, const std::filesystem::path& to) override {
     return rename_error != 0 ? -rename_error : FileSystem::rename(from, to);
   }
   std::int64_t freeSpace(const std::filesystem::path& directory) override {
     return std::min<std::int64_t>(room, FileSystem::freeSpace(directory));
+  }
+
+ private:
+  static void waitWhile(const std::atomic<bool>& hangs) {
+    while (hangs) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
 };
 

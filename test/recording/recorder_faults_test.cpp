@@ -96,6 +96,8 @@ TEST_F(RecorderTest, AFullDiskIsInTheStatusWhileTheEpisodeGoesOnAndInTheSidecarA
   EXPECT_TRUE(eventually([&] { return recorder_->status().minutes_left < 0.01; }));
   const Reply reply = recorder_->stop(at(60.0), "success", "");
   ASSERT_TRUE(reply.success) << reply.message;
+  EXPECT_EQ(reply.message, "Saved demo_000001 with " + std::to_string(reply.rows) + " rows, " +
+                               std::to_string(6000 - reply.rows) + " more found no room on the disk.");
   const std::vector<double> seconds = secondsOf("demo_000001");
   EXPECT_EQ(seconds.size(), reply.rows);
   EXPECT_EQ(seconds, ticks(0, static_cast<double>(seconds.size()) / 100.0)) << "a prefix of what happened";
