@@ -38,8 +38,9 @@ class MasterWatch {
 };
 
 void recordUntilStopped() {
-  demo_logger::DemoLoggerNode recorder(ros::NodeHandle(), ros::NodeHandle("~"),
-                                       demo_logger::readDemoLoggerParameters(ros::NodeHandle("~")));
+  const ros::NodeHandle node;
+  const ros::NodeHandle private_node("~");
+  demo_logger::DemoLoggerNode recorder(node, private_node, demo_logger::readDemoLoggerParameters(node, private_node));
   closeBeforeRosDoes();
   MasterWatch master;
   while (ros::ok() && stop_requested == 0 && !master.lost()) {

@@ -90,6 +90,9 @@ DemoLoggerNode::DemoLoggerNode(const ros::NodeHandle& node, const ros::NodeHandl
                                      [this](const ros::SteadyTimerEvent&) { publishStatusIfChanged(); }),
              node_.createSteadyTimer(ros::WallDuration(kStatusPeriod),
                                      [this](const ros::SteadyTimerEvent&) { everySecond(); })};
+  for (const Recovered& left : recorder_.recovered()) {
+    ROS_WARN_STREAM("saved what a killed recorder had left: " << left.file.string() << ", " << left.rows << " rows");
+  }
   for (const TopicStatus& topic : recorder_.topics()) {
     ROS_INFO_STREAM(topic.name << " from " << topic.topic);
   }
@@ -101,9 +104,12 @@ DemoLoggerNode::DemoLoggerNode(const ros::NodeHandle& node, const ros::NodeHandl
 }
 
 void DemoLoggerNode::close() {
-  if (recorder_.status().state != RecorderState::idle) {
-    stop("", "");
+  readTeleopMap();
+  const Reply reply = recorder_.close();
+  if (!reply.message.empty()) {
+    log(reply);
   }
+  publishStatusIfChanged();
 }
 
 bool DemoLoggerNode::onStart(Start::Request& request, Start::Response& response) {
@@ -215,6 +221,11 @@ void DemoLoggerNode::readTeleopMap() {
 }
 
 void DemoLoggerNode::publishStatus(const RecorderStatus& status) {
+  const bool begun = status.state == RecorderState::recording &&
+                     (!published_ || published_->state != Status::RECORDING || published_->id != status.id);
+  if (begun) {
+    ROS_INFO_STREAM("Recording " << status.id << ".");
+  }
   published_ = toMessage(status);
   status_publisher_.publish(*published_);
 }

@@ -1,9 +1,12 @@
 #include "src/nodes/demo_logger_parameters.h"
 
+#include <ros/master.h>
+
 #include <algorithm>
 #include <filesystem>
 
 #include "demo_logger/pipelines/recorded_robot.h"
+#include "src/ros/stream_converter.h"
 #include "src/ros/version.h"
 
 namespace demo_logger {
@@ -104,6 +107,25 @@ std::map<std::string, ParameterValue> describeParameters(const RecorderConfigura
           {"joints", synchroniser.joints}};
 }
 
+void takeTypesFromMaster(const ros::NodeHandle& node, std::vector<StreamConfiguration>& streams) {
+  ros::master::V_TopicInfo topics;
+  ros::master::getTopics(topics);
+  for (StreamConfiguration& stream : streams) {
+    const std::string name = node.resolveName(stream.topic);
+    const auto topic = std::find_if(topics.begin(), topics.end(),
+                                    [&](const ros::master::TopicInfo& info) { return info.name == name; });
+    if (stream.type || topic == topics.end() || topic->datatype == "*") {
+      continue;
+    }
+    const StreamConverter* converter = findStreamConverter(topic->datatype);
+    if (converter == nullptr) {
+      throw ConfigurationError("stream " + stream.name + ": " + name + " is of type " + topic->datatype +
+                               ", which cannot be recorded; supported are " + supportedStreamTypes());
+    }
+    stream.type = converter->type;
+  }
+}
+
 }  // namespace
 
 DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std::string& robot_description) {
@@ -145,11 +167,14 @@ DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std
   return result;
 }
 
-DemoLoggerParameters readDemoLoggerParameters(const ros::NodeHandle& node) {
-  Parameters parameters = readParameters(node);
+DemoLoggerParameters readDemoLoggerParameters(const ros::NodeHandle& node, const ros::NodeHandle& private_node) {
+  Parameters parameters = readParameters(private_node);
   std::string name;
-  return parseDemoLoggerParameters(
-      parameters, node.searchParam("robot_description", name) ? readRobotDescription(node) : std::string());
+  const bool has_robot = private_node.searchParam("robot_description", name);
+  DemoLoggerParameters result =
+      parseDemoLoggerParameters(parameters, has_robot ? readRobotDescription(private_node) : std::string());
+  takeTypesFromMaster(node, result.recorder.synchroniser.streams);
+  return result;
 }
 
 }  // namespace demo_logger

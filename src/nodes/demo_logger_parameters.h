@@ -34,7 +34,8 @@ struct DemoLoggerParameters {
 /// the full name of the parameter: wrong type, out of range, not understood.
 DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std::string& robot_description);
 
-/// The same from the parameter server. `node` is the private handle.
-DemoLoggerParameters readDemoLoggerParameters(const ros::NodeHandle& node);
+/// The same from the parameter server, below `private_node`. Where the topic of a stream, seen from `node`, is
+/// published already, its type says which columns the stream has; a type that cannot be recorded is refused.
+DemoLoggerParameters readDemoLoggerParameters(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
 
 }  // namespace demo_logger

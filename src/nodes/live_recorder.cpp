@@ -226,6 +226,14 @@ Reply LiveRecorder::stop(const std::string& outcome, const std::string& notes) {
   return recorder_.stop(now, outcome, notes);
 }
 
+Reply LiveRecorder::close() {
+  const Nanoseconds now = toNanoseconds(ros::Time::now());
+  waitUntilReceived(now);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  recordPending();
+  return recorder_.close(now);
+}
+
 Reply LiveRecorder::discard() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return recorder_.discard(toNanoseconds(ros::Time::now()));
@@ -265,6 +273,11 @@ std::map<std::string, std::uint64_t> LiveRecorder::counters() const {
 std::optional<double> LiveRecorder::clockOffset() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return recorder_.synchroniser().clockOffset();
+}
+
+std::vector<Recovered> LiveRecorder::recovered() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return recorder_.recovered();
 }
 
 std::string LiveRecorder::problem() const {

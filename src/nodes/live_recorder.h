@@ -50,6 +50,8 @@ class LiveRecorder {
   /// Everything received by now is in the file.
   Reply stop(const std::string& outcome, const std::string& notes);
   Reply discard();
+  /// Saves the open episode as complete, if there is one; none begins any more.
+  Reply close();
   Reply label(const std::string& id, const std::string& outcome, const std::string& task,
               const std::string& operator_name, const std::string& notes);
   void setTeleopMap(const TeleopMapMetadata& map);
@@ -60,6 +62,8 @@ class LiveRecorder {
   std::vector<StreamMetadata> streams() const;
   std::map<std::string, std::uint64_t> counters() const;
   std::optional<double> clockOffset() const;
+  /// What a killed recorder had left, finished at the beginning.
+  std::vector<Recovered> recovered() const;
   /// Why nothing can be recorded at present, empty if all is well.
   std::string problem() const;
 

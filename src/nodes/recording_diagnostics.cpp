@@ -86,9 +86,9 @@ void RecordingDiagnostics::reportJointStates(Report& report) {
   if (!problem.empty()) {
     report.summary(DiagnosticStatus::ERROR, problem);
   } else if (silence > kLongestSilence) {
-    const std::string since =
-        topic.last ? withDigits("%.1f s ago", silence) : withDigits("the start %.1f s ago", silence);
-    report.summary(DiagnosticStatus::ERROR, "no JointState on " + topic.topic + " since " + since);
+    const std::string since = topic.last ? withDigits("ROS time %.1f", toSeconds(*topic.last)) : "the node began";
+    report.summary(DiagnosticStatus::ERROR,
+                   "no JointState on " + topic.topic + " since " + since + withDigits(", %.1f s ago", silence));
   } else if (joint_states_ == 0) {
     report.summary(DiagnosticStatus::WARN, "waiting for the first JointState on " + topic.topic);
   } else {
@@ -106,12 +106,10 @@ void RecordingDiagnostics::reportRecording(Report& report) const {
   for (const Fault& fault : status.faults) {
     report.add("fault", fault.what + " (" + std::to_string(fault.count) + ")");
   }
-  if (!status.faults.empty()) {
-    const Fault& last = status.faults.back();
-    const bool disk = last.what.find("disk") != std::string::npos;
-    report.summary(disk ? DiagnosticStatus::ERROR : DiagnosticStatus::WARN, last.what);
-  } else {
-    report.summary(DiagnosticStatus::OK, std::string(nameOf(status.state)) + " " + status.id);
+  report.summary(DiagnosticStatus::OK, std::string(nameOf(status.state)) + " " + status.id);
+  for (const Fault& fault : status.faults) {
+    const bool error = fault.severity == Severity::error;
+    report.mergeSummary(error ? DiagnosticStatus::ERROR : DiagnosticStatus::WARN, fault.what);
   }
   if (status.state == RecorderState::recording && status.minutes_left < kFewMinutesLeft) {
     report.mergeSummary(DiagnosticStatus::WARN, withDigits("%.1f minutes until the disk is full", status.minutes_left));

@@ -1,0 +1,150 @@
+#include "src/nodes/demo_logger_parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+namespace demo_logger {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+
+std::string twoLinkUrdf() {
+  std::ostringstream text;
+  text << std::ifstream(DEMO_LOGGER_SOURCE_DIR "/urdf/two_link.urdf").rdbuf();
+  return text.str();
+}
+
+DemoLoggerParameters parse(const XmlRpcValue& values, const std::string& robot_description = "") {
+  Parameters parameters("/demo_logger", values);
+  return parseDemoLoggerParameters(parameters, robot_description);
+}
+
+std::string refusal(const std::function<void(XmlRpcValue&)>& fill, const std::string& robot_description = "") {
+  XmlRpcValue values;
+  fill(values);
+  try {
+    parse(values, robot_description);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+TEST(DemoLoggerParametersTest, WithoutAnyTheNodeRecordsAtOnceIntoDemosWithTheTeleopCommandHeld) {
+  const DemoLoggerParameters parameters = parse(XmlRpcValue());
+  EXPECT_TRUE(parameters.recorder.autostart);
+  EXPECT_EQ(parameters.recorder.output_directory, std::filesystem::current_path() / "demos");
+  EXPECT_EQ(parameters.recorder.metadata.channel, "unknown");
+  EXPECT_EQ(parameters.recorder.synchroniser.max_wait, 0.1);
+  ASSERT_EQ(parameters.recorder.synchroniser.streams.size(), 1U);
+  EXPECT_EQ(parameters.recorder.synchroniser.streams[0].name, "teleop_cmd");
+  EXPECT_EQ(parameters.recorder.synchroniser.streams[0].type, StreamType::twist);
+  EXPECT_FALSE(parameters.robot.has_value());
+  EXPECT_FALSE(parameters.buttons.any());
+}
+
+TEST(DemoLoggerParametersTest, StreamsAreAddedToTheTeleopCommandOrDescribeIt) {
+  XmlRpcValue values;
+  values["streams"][0]["name"] = "wrench";
+  values["streams"][0]["topic"] = "/ft/raw";
+  values["streams"][0]["align"] = "linear";
+  values["streams"][0]["latency"] = 0.004;
+  values["streams"][0]["in_order"] = true;
+  values["streams"][1]["name"] = "teleop_cmd";
+  values["streams"][1]["topic"] = "cmd_vel";
+  const auto streams = parse(values).recorder.synchroniser.streams;
+  ASSERT_EQ(streams.size(), 2U);
+  EXPECT_EQ(streams[0].name, "teleop_cmd");
+  EXPECT_EQ(streams[0].topic, "cmd_vel");
+  EXPECT_EQ(streams[1].name, "wrench");
+  EXPECT_EQ(streams[1].topic, "/ft/raw");
+  EXPECT_EQ(streams[1].alignment, Alignment::linear);
+  EXPECT_EQ(streams[1].latency, 0.004);
+  EXPECT_TRUE(streams[1].in_order);
+}
+
+TEST(DemoLoggerParametersTest, ATipMakesTheChainsJointsTheArm) {
+  XmlRpcValue values;
+  values["tip"] = "tool_tip";
+  const DemoLoggerParameters parameters = parse(values, twoLinkUrdf());
+  ASSERT_TRUE(parameters.robot.has_value());
+  EXPECT_EQ(parameters.recorder.synchroniser.joints, (std::vector<std::string>{"joint_1", "joint_2"}));
+  EXPECT_EQ(parameters.recorder.metadata.robot.base, "base_link");
+  EXPECT_EQ(parameters.recorder.metadata.robot.name, "two_link");
+}
+
+TEST(DemoLoggerParametersTest, ARobotDescriptionAloneChangesNothing) {
+  EXPECT_FALSE(parse(XmlRpcValue(), twoLinkUrdf()).robot.has_value());
+}
+
+TEST(DemoLoggerParametersTest, TheMeaningOfTheEffortAndTheSettingsStandInTheSidecar) {
+  XmlRpcValue values;
+  values["effort"]["side"] = "link";
+  values["effort"]["timing"] = "held";
+  values["effort"]["includes_gravity"] = false;
+  values["effort"]["control_period"] = 0.001;
+  values["max_wait"] = 0.25;
+  const Metadata metadata = parse(values).recorder.metadata;
+  EXPECT_EQ(metadata.effort.side, "link");
+  EXPECT_EQ(metadata.effort.timing, "held");
+  EXPECT_FALSE(metadata.effort.includes_gravity);
+  EXPECT_EQ(metadata.effort.control_period, 0.001);
+  EXPECT_EQ(std::get<double>(metadata.parameters.at("max_wait")), 0.25);
+}
+
+TEST(DemoLoggerParametersTest, WhatIsWrongIsNamedInFullWithWhatWasExpected) {
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["max_wait"] = -1.0; }),
+            "/demo_logger/max_wait is -1 s, expected a number from 0 to 10 s.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["autostart"] = "yes"; }),
+            "/demo_logger/autostart is the text \"yes\", expected true or false.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["channel"] = "telepathy"; }),
+            "/demo_logger/channel is \"telepathy\", expected one of teleoperation, kinesthetic, vr, unknown.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["output_dir"] = ""; }),
+            "/demo_logger/output_dir is empty, expected a directory.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["buttons"]["start"] = 1000; }),
+            "/demo_logger/buttons/start is 1000, expected a whole number from -1 to 255.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["effort"]["side"] = "left"; }),
+            "/demo_logger/effort/side is \"left\", expected one of motor, link.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["streams"][0]["topic"] = "x"; }),
+            "/demo_logger/streams[0]/name is missing, expected the name of the stream's columns.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) {
+              values["streams"][0]["name"] = "wrench";
+              values["streams"][0]["align"] = "spline";
+            }),
+            "/demo_logger/streams[0]/align is \"spline\", expected one of hold, linear, nearest.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["tip"] = "tool_tip"; }),
+            "/demo_logger/tip is given but robot_description is not set, here or in a namespace above; expected the "
+            "URDF of the arm there, or neither.");
+}
+
+TEST(DemoLoggerParametersTest, AnUnknownNameIsRefusedAtEveryLevel) {
+  EXPECT_EQ(refusal([](XmlRpcValue& values) {
+              values["autosart"] = true;
+            }).rfind("/demo_logger/autosart is not a parameter that is understood here; known are ", 0),
+            0U);
+  EXPECT_EQ(refusal([](XmlRpcValue& values) {
+              values["streams"][0]["name"] = "wrench";
+              values["streams"][0]["delay"] = 1.0;
+            }).rfind("/demo_logger/streams[0]/delay is not a parameter", 0),
+            0U);
+  EXPECT_EQ(refusal([](XmlRpcValue& values) {
+              values["buttons"]["pause"] = 1;
+            }).rfind("/demo_logger/buttons/pause is not a parameter", 0),
+            0U);
+}
+
+TEST(DemoLoggerParametersTest, AStreamThatTwoShareOrALinkThatIsMissingIsASentence) {
+  EXPECT_NE(refusal([](XmlRpcValue& values) {
+              values["streams"][0]["name"] = "wrench";
+              values["streams"][1]["name"] = "wrench";
+            }).find("wrench"),
+            std::string::npos);
+  EXPECT_NE(refusal([](XmlRpcValue& values) { values["tip"] = "hand"; }, twoLinkUrdf()).find("hand"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace demo_logger
