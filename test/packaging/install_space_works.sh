@@ -29,16 +29,13 @@ expect() {
 expect "$(rospack find demo_logger)" "$installed/share/demo_logger" "the package's folder"
 expect "$(command -v demo_tool)" "$installed/lib/demo_logger/demo_tool" "demo_tool on PATH"
 rosrun demo_logger demo_tool --help >/dev/null
-executables() {
-  find "$1/lib/demo_logger" -maxdepth 1 -type f -executable -printf '%f\n' | grep -vE '^test_|_test$' | sort
-}
-expect "$(executables "$installed")" "$( (executables "$devel"; echo draw_demonstration.py) | sort)" \
-  "what is installed in lib/demo_logger"
+programs() { (cd "$1/lib/demo_logger" && printf '%s\n' *_node demo_tool | sort); }
+expect "$(programs "$installed")" "$(programs "$devel")" "what is installed in lib/demo_logger"
 rosrun demo_logger draw_demonstration.py --help >/dev/null
 
 port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])')
 export ROS_MASTER_URI=http://localhost:$port
-# A short demonstration, from the simulated arm to the file.
+# One demonstration, from the simulated arm to the file.
 timeout --signal=INT 100 roslaunch --port "$port" demo_logger demo.launch output_dir:="$home/demos" \
   >"$home/launch.log" 2>&1 </dev/null &
 launched=$!
