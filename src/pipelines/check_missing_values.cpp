@@ -1,5 +1,4 @@
 #include <cmath>
-#include <set>
 
 #include "check_parts.h"
 
@@ -41,12 +40,14 @@ void checkMissingValues(const Demonstration& demonstration, const CheckLimits& l
     if (missing == 0) {
       continue;
     }
+    const bool is_needed = column.role != Role::auxiliary;
     if (missing == expected) {
-      without_values.push_back(column.name);
+      if (is_needed) {  // an arm without torque sensors is no finding
+        without_values.push_back(column.name);
+      }
       continue;
     }
     const double share = static_cast<double>(missing) / static_cast<double>(expected);
-    const bool is_needed = column.role != Role::auxiliary;
     findings.add("missing_values", is_needed && share > limits.tolerated_share ? Severity::error : Severity::warning,
                  "column " + column.name + " is missing in " + formatCount(missing, "row") + " (" + formatShare(share) +
                      "), first " + formatInstant(first) +
@@ -55,7 +56,8 @@ void checkMissingValues(const Demonstration& demonstration, const CheckLimits& l
   if (!without_values.empty()) {
     findings.add("no_values", Severity::warning,
                  "no row has a value of " + formatNames(without_values) +
-                     "; the robot or device does not send them, which is fine where nobody needs them.");
+                     ", expected some in a state or control; the robot or device does not send them. Leave the columns "
+                     "out, or derive them.");
   }
 }
 

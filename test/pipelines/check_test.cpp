@@ -126,9 +126,19 @@ TEST(CheckTest, ColumnsWithoutAnyValueAreToldTogether) {
   demonstration.values.middleCols(2, 2).setConstant(kMissing);
   const Finding finding = onlyFinding(check(demonstration));
   EXPECT_EQ(finding.severity, Severity::warning);
-  EXPECT_EQ(finding.sentence,
-            "no row has a value of dq_elbow and dq_wrist; the robot or device does not send them, which is fine where "
-            "nobody needs them.");
+  EXPECT_EQ(
+      finding.sentence,
+      "no row has a value of dq_elbow and dq_wrist, expected some in a state or control; the robot or device does "
+      "not send them. Leave the columns out, or derive them.");
+}
+
+TEST(CheckTest, ARobotWithoutTorqueSensorsIsNoFinding) {
+  Demonstration demonstration = makeSineDemonstration();
+  demonstration.columns[4] = {"tau_elbow", "N m", Role::auxiliary, Interpolation::linear, ""};
+  demonstration.values.col(4).setConstant(kMissing);
+  const CheckResult result = check(demonstration);
+  EXPECT_TRUE(result.findings.empty());
+  EXPECT_EQ(result.summary.missing.at("tau_elbow"), 1.0);
 }
 
 TEST(CheckTest, AnOrientationMustBeAUnitQuaternion) {
