@@ -7,17 +7,14 @@
 namespace demo_logger {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 SensorConfiguration readSensors(Parameters parameters) {
   SensorConfiguration sensors;
-  sensors.position_noise = parameters.number("position_noise", sensors.position_noise, {0.0, kInfinity, "rad or m"});
+  sensors.position_noise = parameters.number("position_noise", sensors.position_noise, {0.0, INFINITY, "rad or m"});
   sensors.position_resolution =
-      parameters.number("position_resolution", sensors.position_resolution, {0.0, kInfinity, "rad or m"});
-  sensors.velocity_noise =
-      parameters.number("velocity_noise", sensors.velocity_noise, {0.0, kInfinity, "rad/s or m/s"});
-  sensors.effort_noise = parameters.number("effort_noise", sensors.effort_noise, {0.0, kInfinity, "N m or N"});
-  sensors.seed = static_cast<std::uint64_t>(parameters.integer("seed", 1, {0.0, kInfinity, ""}));
+      parameters.number("position_resolution", sensors.position_resolution, {0.0, INFINITY, "rad or m"});
+  sensors.velocity_noise = parameters.number("velocity_noise", sensors.velocity_noise, {0.0, INFINITY, "rad/s or m/s"});
+  sensors.effort_noise = parameters.number("effort_noise", sensors.effort_noise, {0.0, INFINITY, "N m or N"});
+  sensors.seed = static_cast<std::uint64_t>(parameters.integer("seed", 1, {0.0, INFINITY, ""}));
   parameters.rejectUnknown();
   return sensors;
 }

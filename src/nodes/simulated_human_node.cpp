@@ -4,6 +4,7 @@
 #include <sensor_msgs/Joy.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "demo_logger/robot/robot_model.h"
@@ -34,7 +35,7 @@ SimulatedHumanParameters readSimulatedHumanParameters(const ros::NodeHandle& pri
   chain.tip = parameters.text("tip", "");
 
   SimulatedHumanConfiguration& human = result.human;
-  human.seed = static_cast<std::uint64_t>(parameters.integer("seed", 1, {0.0, 2147483647.0, ""}));
+  human.seed = static_cast<std::uint64_t>(parameters.integer("seed", 1, {0.0, INFINITY, ""}));
   human.reading_period = 1.0 / parameters.number("joy_rate", 50.0, {10.0, 1000.0, "Hz"});
   human.reaction_delay = parameters.number("reaction_delay", human.reaction_delay, {0.0, 0.5, "s"});
   human.tremor = parameters.number("tremor", human.tremor, {0.0, 0.2, "of an axis"});

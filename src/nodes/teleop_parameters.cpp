@@ -112,7 +112,7 @@ TeleoperationConfiguration readTeleoperation(Parameters& parameters) {
           "has an example), or axes and gain.");
     }
   }
-  for (const int axis : configuration.axes) configuration.map.inputs.push_back("joy_axis" + std::to_string(axis));
+  for (const int axis : configuration.axes) configuration.map.inputs.push_back("h_axis" + std::to_string(axis));
   configuration.map.outputs = outputNames(configuration.map.mode);
   configuration.map.offset = readVector(parameters, "offset", std::vector<double>(kOutputs, 0.0));
   configuration.map.dead_zone = parameters.number("dead_zone", 0.02, {0.0, 1.0, "of an axis"});
