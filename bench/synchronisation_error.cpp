@@ -10,6 +10,7 @@
 #include <sensor_msgs/JointState.h>
 
 #include <algorithm>
+#include <boost/bind/bind.hpp>
 #include <boost/make_shared.hpp>
 #include <cmath>
 #include <cstdio>
@@ -223,12 +224,11 @@ Claims recordWithApproximateTime(const Truth& truth, const std::vector<Message>&
   using Policy = message_filters::sync_policies::ApproximateTime<sensor_msgs::JointState, geometry_msgs::TwistStamped>;
   message_filters::Synchronizer<Policy> synchronizer(Policy(100), joint_state_input, command_input);
   Claims claims(truth.rows.size());
-  const std::function<void(const sensor_msgs::JointStateConstPtr&, const geometry_msgs::TwistStampedConstPtr&)> emit =
-      [&](const sensor_msgs::JointStateConstPtr& joint_state, const geometry_msgs::TwistStampedConstPtr& command) {
-        claims[joint_state->header.seq] = Claim{command->twist.linear.x, command->twist.linear.y};
-      };
-  synchronizer.registerCallback(
-      boost::function<void(const sensor_msgs::JointStateConstPtr&, const geometry_msgs::TwistStampedConstPtr&)>(emit));
+  const auto emit = [&](const sensor_msgs::JointStateConstPtr& joint_state,
+                        const geometry_msgs::TwistStampedConstPtr& command) {
+    claims[joint_state->header.seq] = Claim{command->twist.linear.x, command->twist.linear.y};
+  };
+  synchronizer.registerCallback(boost::bind<void>(emit, boost::placeholders::_1, boost::placeholders::_2));
   inOrderOfReceipt(truth.joint_states, commands, [&](bool is_joint_state, const Message& message) {
     const auto stamp = static_cast<std::uint64_t>(message.stamp != 0 ? message.stamp : message.receipt);
     if (is_joint_state) {
@@ -315,6 +315,7 @@ void printHeader() {
 
 int main() {
   using namespace demo_logger;
+  ros::Time::init();  // ApproximateTime asks for the time, though nothing depends on it
   const Network quiet{0.001, 0.0, 0.0};
   const Network delayed{0.020, 0.0, 0.0};
   const Network jittery{0.005, 0.030, 0.0};
