@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -10,27 +11,29 @@
 
 namespace demo_logger {
 
+/// The most important first.
+enum class DiskFaultKind { rows, sidecar, sync, begin, recovery };
+
 /// What the disk refused, each kind once with its count, and whether it still does. For several threads.
 class DiskFaults {
  public:
-  /// `kind` tells faults apart whose sentences differ in numbers alone, such as the bytes left. `lasting`: until
+  /// `what` of the first time is kept as the fault, that of the last time tells the present state. `lasting`: until
   /// over() is called.
-  void report(const std::string& kind, Nanoseconds stamp, const std::string& what, bool lasting);
-  void over(const std::string& kind);
+  void report(DiskFaultKind kind, Nanoseconds stamp, const std::string& what, bool lasting);
+  void over(DiskFaultKind kind);
 
   std::optional<std::string> present() const;
   std::vector<Fault> all() const;
 
  private:
   struct Entry {
-    std::string kind;
     Fault fault;
     bool present = false;
     std::string latest;
   };
 
   mutable std::mutex mutex_;
-  std::vector<Entry> entries_;
+  std::map<DiskFaultKind, Entry> entries_;
 };
 
 }  // namespace demo_logger

@@ -1,5 +1,7 @@
 #include "demo_logger/recording/episode_writer.h"
 
+#include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -96,7 +98,7 @@ class EpisodeWriter::Implementation {
   void sync() {
     const WritingProgress progress = rows_.progress();
     if (const int result = rows_.syncData(); result != 0) {
-      faults_.report("sync", progress.last_written_stamp,
+      faults_.report(DiskFaultKind::sync, progress.last_written_stamp,
                      "disk error: " + partFiles(directory_, id_).data.string() + " could not be synced (" +
                          errorText(result) + "); the rows of the last second may be lost if the power fails.",
                      /*lasting=*/false);
@@ -108,11 +110,14 @@ class EpisodeWriter::Implementation {
 
   void updateSidecar(const Metadata& metadata) {
     if (const int result = sidecar_.replace(sidecarText(completed(metadata), columns_)); result == 0) {
-      faults_.over("sidecar");
+      faults_.over(DiskFaultKind::sidecar);
     } else {
-      faults_.report("sidecar", rows_.progress().last_written_stamp,
-                     "disk error: " + sidecar_.file().string() + " could not be brought up to date (" +
-                         errorText(result) + "); it is tried again each second.",
+      const bool full = result == -ENOSPC || result == -EDQUOT;
+      const std::int64_t bytes_free = std::max<std::int64_t>(0, file_system_.freeSpace(directory_));
+      faults_.report(DiskFaultKind::sidecar, rows_.progress().last_written_stamp,
+                     (full ? "disk full: " : "disk error: ") + sidecar_.file().string() +
+                         " could not be brought up to date (" + errorText(result) + ", " + std::to_string(bytes_free) +
+                         " bytes free); it is tried again each second.",
                      /*lasting=*/true);
     }
   }

@@ -22,7 +22,7 @@ std::filesystem::path publish(FileSystem& file_system, const std::filesystem::pa
     if (file_system.exists(finals.data) || file_system.exists(finals.sidecar)) {
       continue;
     }
-    sidecar.replace(text(final_id));
+    sidecar.replaceForGood(text(final_id));
     int result = file_system.rename(data, finals.data);
     if (result == -EEXIST) {
       continue;

@@ -51,7 +51,7 @@ Recorder::Implementation::Implementation(RecorderConfiguration configuration,
     recovered_ = recover(configuration_.output_directory);
   } catch (const FileError& error) {
     // What an earlier recording left behind must not prevent the next one.
-    faults_.report("recovery", 0, error.what(), /*lasting=*/false);
+    faults_.report(DiskFaultKind::recovery, 0, error.what(), /*lasting=*/false);
   }
 }
 
@@ -145,7 +145,7 @@ void Recorder::Implementation::beginByItself(Nanoseconds request) {
   try {
     begin(request, Metadata(said_));
   } catch (const FileError& error) {
-    faults_.report("begin", last_receipt_.value_or(0), error.what(), /*lasting=*/false);
+    faults_.report(DiskFaultKind::begin, last_receipt_.value_or(0), error.what(), /*lasting=*/false);
     starts_by_itself_ = true;
     failed_at_ = last_receipt_;
   }

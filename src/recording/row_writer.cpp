@@ -12,7 +12,6 @@ namespace demo_logger {
 namespace {
 
 constexpr std::size_t kTextBytes = 256 * 1024;  // formatted at once
-constexpr char kRefusal[] = "write";
 
 std::chrono::duration<double> seconds(double value) { return std::chrono::duration<double>(value); }
 
@@ -24,11 +23,10 @@ RowWriter::RowWriter(FileSystem& file_system, FileDescriptor descriptor, std::fi
       file_(std::move(file)),
       options_(options),
       faults_(faults),
-      header_(csvHeader(columns)),
       column_count_(columns.size()),
       data_(file_system, std::move(descriptor)),
       batch_(columns.size()),
-      text_(header_),
+      text_(csvHeader(columns)),
       queue_(columns.size()),
       thread_([this] { run(); }) {}
 
@@ -84,6 +82,10 @@ void RowWriter::run() {
 }
 
 void RowWriter::writeBatch() {
+  if (gave_up_) {
+    giveUp(batch_.size());
+    return;
+  }
   std::size_t formatted = 0;
   std::size_t written = 0;
   while (written < batch_.size()) {
@@ -96,7 +98,7 @@ void RowWriter::writeBatch() {
       advance(rows, batch_.stamp(written - 1));
     }
     if (data_.error() == 0) {
-      faults_.over(kRefusal);
+      faults_.over(DiskFaultKind::rows);
       continue;
     }
     reportRefusal(batch_.size() - written);
@@ -128,8 +130,10 @@ void RowWriter::advance(std::size_t rows, Nanoseconds last_stamp) {
   progress_.bytes = static_cast<std::uint64_t>(data_.size());
 }
 
+/// What comes after a row that is lost at the end is lost too: a shorter recording is better than one with a hole.
 void RowWriter::giveUp(std::size_t rows) {
-  text_ = header_written_ ? std::string() : header_;
+  gave_up_ = true;
+  text_.clear();
   const std::lock_guard<std::mutex> lock(mutex_);
   progress_.not_written += rows;
 }
@@ -138,7 +142,7 @@ void RowWriter::reportRefusal(std::size_t waiting) {
   const int error = data_.error();
   const std::int64_t free_bytes = std::max<std::int64_t>(0, file_system_.freeSpace(file_.parent_path()));
   const bool full = error == ENOSPC || error == EDQUOT;
-  faults_.report(kRefusal, batch_.stamp(batch_.size() - waiting),
+  faults_.report(DiskFaultKind::rows, batch_.stamp(batch_.size() - waiting),
                  (full ? "disk full: " : "disk error: ") + file_.string() + " takes no more rows (" + errorText(error) +
                      ", " + std::to_string(free_bytes) + " bytes free); what is in it stays readable, " +
                      std::to_string(waiting) + " rows or more wait in memory, and writing is tried again " +

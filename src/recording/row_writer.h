@@ -58,7 +58,6 @@ class RowWriter {
   const std::filesystem::path file_;
   const EpisodeWriterOptions options_;
   DiskFaults& faults_;
-  const std::string header_;
   const std::size_t column_count_;
 
   // Of the thread alone.
@@ -66,6 +65,7 @@ class RowWriter {
   RowBatch batch_;
   std::string text_;  // formatted, not yet in the file
   bool header_written_ = false;
+  bool gave_up_ = false;
 
   mutable std::mutex mutex_;  // nobody holds it while waiting for the disk
   std::condition_variable rows_waiting_;

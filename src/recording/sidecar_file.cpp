@@ -10,6 +10,8 @@ namespace {
 /// Room kept behind the text, so that the last words about a full disk still fit onto it.
 constexpr off_t kReserve = 16384;
 
+bool isFull(int result) { return result == -ENOSPC || result == -EDQUOT; }
+
 int writeAll(FileSystem& file_system, int descriptor, std::string_view text) {
   std::size_t done = 0;
   while (done < text.size()) {
@@ -30,12 +32,17 @@ SidecarFile::SidecarFile(FileSystem& file_system, std::filesystem::path file, Fi
     : file_system_(file_system), file_(std::move(file)), descriptor_(std::move(descriptor)) {}
 
 int SidecarFile::replace(std::string_view text) {
-  int result = writeNew(text);
-  if (result == -ENOSPC || result == -EDQUOT) {
-    result = overwrite(text);
-  }
+  const int result = writeNew(text);
   if (result == 0) {
     size_ = static_cast<off_t>(text.size());
+  }
+  return result;
+}
+
+int SidecarFile::replaceForGood(std::string_view text) {
+  int result = replace(text);
+  if (isFull(result)) {
+    result = overwrite(text);
   }
   return result;
 }
@@ -59,7 +66,10 @@ int SidecarFile::writeNew(std::string_view text) {
     result = writeAll(file_system_, descriptor.get(), text);
   }
   if (result == 0) {
-    file_system_.reserve(descriptor.get(), static_cast<off_t>(text.size()) + kReserve);
+    result = file_system_.reserve(descriptor.get(), static_cast<off_t>(text.size()) + kReserve);
+    result = isFull(result) ? result : 0;  // a file system that knows no reserves is no reason to stop
+  }
+  if (result == 0) {
     result = file_system_.syncData(descriptor.get());
   }
   if (result == 0) {
@@ -74,14 +84,19 @@ int SidecarFile::writeNew(std::string_view text) {
 }
 
 int SidecarFile::overwrite(std::string_view text) {
-  if (file_system_.reserve(descriptor_.get(), static_cast<off_t>(text.size())) != 0) {
+  const auto size = static_cast<off_t>(text.size());
+  if (file_system_.reserve(descriptor_.get(), size) != 0) {
     return -ENOSPC;  // a torn text would be worse than an old one
   }
   int result = writeAll(file_system_, descriptor_.get(), text);
   if (result == 0) {
-    result = file_system_.truncate(descriptor_.get(), static_cast<off_t>(text.size()));
+    result = file_system_.truncate(descriptor_.get(), size);
   }
-  return result == 0 ? file_system_.syncData(descriptor_.get()) : result;
+  if (result == 0) {
+    size_ = size;
+    result = file_system_.syncData(descriptor_.get());
+  }
+  return result;
 }
 
 }  // namespace demo_logger

@@ -14,13 +14,14 @@ class SidecarFile {
   /// `descriptor` holds the lock on `file`.
   SidecarFile(FileSystem& file_system, std::filesystem::path file, FileDescriptor descriptor);
 
-  /// Writes, syncs and renames a new file over the old one; on a full disk, where the new one has no room beside the
-  /// old one, into the old one's reserve. Returns 0 or −errno; the old text then stays.
+  /// Writes and syncs a new file with some reserve behind its text, and renames it over the old one. Returns 0 or
+  /// −errno; the old file then stays.
   int replace(std::string_view text);
-
-  /// Whether replace() has ever succeeded.
+  /// The last time. On a disk without room for a new file beside the old one, the text goes into the old one's reserve.
+  int replaceForGood(std::string_view text);
+  /// Whether that has ever succeeded.
   bool hasText() const { return size_ > 0; }
-  /// When nothing more will be written.
+  /// After replaceForGood().
   void giveReserveBack();
 
   const std::filesystem::path& file() const { return file_; }
