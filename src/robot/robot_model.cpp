@@ -65,7 +65,7 @@ class RobotModel::Implementation {
         mass(chain.getNrOfJoints()),
         no_wrenches(chain.getNrOfSegments(), KDL::Wrench::Zero()) {}
 
-  int size() const { return static_cast<int>(chain.getNrOfJoints()); }
+  int size() const { return static_cast<int>(description.joints.size()); }
 
   /// Copies into KDL's vector; false if a value is not finite, which KDL would not report.
   bool take(const char* what, const Eigen::VectorXd& values, KDL::JntArray& target) const {

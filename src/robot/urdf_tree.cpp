@@ -27,7 +27,7 @@ bool isMoving(const urdf::Joint& joint) {
 Eigen::Vector3d unitAxis(const urdf::Joint& joint) { return toEigen(joint.axis).normalized(); }
 
 Eigen::Isometry3d childInParent(const urdf::Joint& joint, double position) {
-  const Eigen::Isometry3d origin = toEigen(joint.parent_to_joint_origin_transform);
+  Eigen::Isometry3d origin = toEigen(joint.parent_to_joint_origin_transform);
   if (!isMoving(joint)) return origin;
   if (joint.type == urdf::Joint::PRISMATIC) return origin * Eigen::Translation3d(position * unitAxis(joint));
   return origin * Eigen::AngleAxisd(position, unitAxis(joint));
@@ -66,7 +66,7 @@ void refuseUnusableJoint(const urdf::Joint& joint) {
 }
 
 urdf::LinkConstSharedPtr findLink(const urdf::ModelInterface& model, const std::string& name) {
-  if (const auto link = model.getLink(name)) return link;
+  if (auto link = model.getLink(name)) return link;
   std::vector<std::string> names;
   for (const auto& [known, link] : model.links_) names.push_back(known);
   throw ModelError("no link '" + name + "' in robot '" + model.getName() + "' of " + std::to_string(names.size()) +
