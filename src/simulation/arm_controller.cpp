@@ -89,7 +89,7 @@ class ArmController::Implementation {
 
   void reset() {
     reference_.follow(Eigen::VectorXd::Zero(model_.size()));
-    gate_.clear("no command yet");
+    gate_.reset();
   }
 
   const ArmControllerConfiguration& configuration() const { return configuration_; }

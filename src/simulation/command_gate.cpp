@@ -135,6 +135,11 @@ void CommandGate::clear(const std::string& why) {
   why_none_ = why;
 }
 
+void CommandGate::reset() {
+  clocks_.clear();
+  clear("no command yet");
+}
+
 std::vector<std::string> CommandGate::clockMismatches() const {
   std::vector<std::string> mismatches;
   for (const auto& [source, clock] : clocks_) {

@@ -14,7 +14,13 @@ constexpr Nanoseconds kLongestTransport = 100'000'000;
 }  // namespace
 
 void PublisherClock::observe(Nanoseconds stamp, Nanoseconds receipt) {
-  if (offset_) return;
+  if (offset_) {
+    const bool from_the_future = receipt - stamp < *offset_ + kShortestTransport;
+    from_the_future_ = from_the_future ? from_the_future_ + 1 : 0;
+    if (from_the_future_ < kFewest) return;
+    offset_.reset();
+    from_the_future_ = 0;
+  }
   if (delays_.empty()) first_receipt_ = receipt;
   if (delays_.size() < kMost) delays_.push_back(receipt - stamp);
   if (delays_.size() < kFewest || receipt - first_receipt_ < kWindow) return;

@@ -196,7 +196,9 @@ TEST_F(WrongTypeTest, MovesNothing) {
 
 TEST_F(SimulatedArmNodeTest, WhenStampedCommandsEndTheArmBrakesByTheirStamps) {
   ros::Publisher publisher = advertise<geometry_msgs::TwistStamped>("teleop_cmd");
-  ASSERT_TRUE(send(publisher, makeStamped(0.05), [](const AppliedCommand& tick) { return tick.command[1] == 0.05; }));
+  const ros::Duration on_the_way(0.1);  // so that the stamp is too old before the receipt is
+  ASSERT_TRUE(send(
+      publisher, makeStamped(0.05), [](const AppliedCommand& tick) { return tick.command[1] == 0.05; }, on_the_way));
   EXPECT_TRUE(applied.waitUntil([](const AppliedCommand& tick) {
     return tick.reason == "the last command is older than 0.3 s by its stamp" && std::abs(tick.command[1]) < 1e-6;
   })) << applied.last().reason;

@@ -170,6 +170,20 @@ TEST(CommandGateTest, ClearingForgetsTheCommandAndSaysWhy) {
   EXPECT_EQ(gate.whyNone(), "paused");
 }
 
+TEST(CommandGateTest, AResetForgetsTheCommandAndTheClocks) {
+  CommandGate gate = makeGate();
+  ArmCommand command = makeVelocity(0.1, 0.2);
+  for (Nanoseconds now = kNow; now <= kNow + kNanosecondsPerSecond; now += 100 * kMillisecond) {
+    command.stamp = now - 5 * kNanosecondsPerSecond;
+    admit(gate, command, now);
+  }
+  ASSERT_EQ(gate.clockMismatches().size(), 1U);
+  gate.reset();
+  EXPECT_TRUE(gate.clockMismatches().empty());
+  EXPECT_EQ(gate.inForce(kNow + kNanosecondsPerSecond), nullptr);
+  EXPECT_EQ(gate.whyNone(), "no command yet");
+}
+
 TEST(CommandGateTest, MemoryForClocksIsBounded) {
   CommandGate gate = makeGate();
   ArmCommand command = makeVelocity(0.1, 0.2);

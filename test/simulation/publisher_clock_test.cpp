@@ -36,9 +36,21 @@ TEST(PublisherClockTest, TakesUsualTransportForEqualClocks) {
   EXPECT_EQ(observeFor(1000 * kMillisecond, -21 * kMillisecond).offset(), -21 * kMillisecond);
 }
 
-TEST(PublisherClockTest, IsFrozenOnceDecided) {
+TEST(PublisherClockTest, IsFrozenOnceDecidedHoweverStaleMessagesBecome) {
   PublisherClock clock = observeFor(1000 * kMillisecond, 0);
   for (int i = 0; i < 100; ++i) clock.observe(0, 60'000 * kMillisecond);
+  EXPECT_EQ(clock.offset(), 0);
+}
+
+TEST(PublisherClockTest, IsJudgedAnewWhenFiveMessagesInARowWouldComeFromTheFuture) {
+  PublisherClock clock = observeFor(1000 * kMillisecond, 3000 * kMillisecond);  // a second of stale messages
+  Nanoseconds receipt = 2000 * kMillisecond;
+  for (int i = 0; i < 4; ++i, receipt += 100 * kMillisecond) clock.observe(receipt, receipt);
+  EXPECT_EQ(clock.offset(), 3000 * kMillisecond) << "four are not enough";
+  clock.observe(receipt, receipt);
+  EXPECT_FALSE(clock.offset());
+  for (int i = 0; i < 10; ++i, receipt += 100 * kMillisecond) clock.observe(receipt, receipt);
+  clock.observe(receipt, receipt);
   EXPECT_EQ(clock.offset(), 0);
 }
 

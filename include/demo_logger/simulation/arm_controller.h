@@ -58,7 +58,7 @@ class ArmController {
   /// came in since the last tick. `now` must not decrease.
   AppliedControl tick(Nanoseconds now, const ArmState& state, const std::vector<ArmCommand>& commands);
 
-  /// The reference at rest and no command in force, as after construction.
+  /// The reference at rest, no command in force, publishers' clocks unknown, as after construction.
   void reset();
 
   std::uint64_t refusedCommands() const;

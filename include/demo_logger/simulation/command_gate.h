@@ -38,6 +38,9 @@ class CommandGate {
   /// Forgets the command in force, not the clocks.
   void clear(const std::string& why);
 
+  /// As it was when it was made.
+  void reset();
+
   /// Publishers whose clock differs from this one: "/teleop: stamps are 5 s behind this clock (transport or skew)".
   std::vector<std::string> clockMismatches() const;
 
