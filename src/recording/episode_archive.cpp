@@ -49,7 +49,7 @@ std::string EpisodeArchive::label(const std::string& id, const EpisodeLabel& lab
     throw FileError("There is no episode to label: this recorder has none yet. Give the id of one in " +
                     directory_.string() + ".");
   }
-  const std::string labelled = id.empty() ? finished_.back().stem().string() : id;
+  std::string labelled = id.empty() ? finished_.back().stem().string() : id;
   labelEpisode(directory_, labelled, label);
   return labelled;
 }

@@ -19,6 +19,7 @@ void OpenEpisode::open(const std::vector<Column>& recorded, const std::map<std::
     columns.insert(columns.end(), more.begin(), more.end());
   }
   std::vector<std::string> names;
+  names.reserve(columns.size());
   for (const Column& column : columns) {
     names.push_back(column.name);
   }
