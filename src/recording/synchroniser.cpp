@@ -218,9 +218,7 @@ std::optional<Nanoseconds> Synchroniser::lastOf(std::size_t stream) const { retu
 
 std::vector<StreamMetadata> Synchroniser::streams() const { return implementation_->sequencer().streams(); }
 
-std::map<std::string, std::uint64_t> Synchroniser::counters() const {
-  return implementation_->counters();
-}
+std::map<std::string, std::uint64_t> Synchroniser::counters() const { return implementation_->counters(); }
 
 std::vector<Fault> Synchroniser::faults() const { return implementation_->faults(); }
 
