@@ -11,6 +11,8 @@ namespace {
 
 /// In the year 2112. Keeps every sum and difference of instants within 64 bits.
 constexpr Nanoseconds kLatestInstant = 4'500'000'000'000'000'000;
+/// A watermark that everything has passed, whatever rows wait for.
+constexpr Nanoseconds kEndOfReceipts = 2 * kLatestInstant;
 constexpr std::size_t kMostValues = 1000;
 constexpr std::size_t kLongestText = 255;
 
@@ -74,6 +76,7 @@ class Synchroniser::Implementation {
   /// Processes what was received until `until`. While the clock offset is needed and not known, messages stay in the
   /// inbox; `last_chance`: it is taken from what is there.
   void advance(Nanoseconds until, bool last_chance, RowListener& listener) {
+    until = std::clamp(until, -kLatestInstant, kEndOfReceipts);
     if (inbox_.isSetBack(until)) {
       finishReceiptClock(listener);
       inbox_.restartAt(until);
