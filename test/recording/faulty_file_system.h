@@ -23,6 +23,7 @@ class FaultyFileSystem : public FileSystem {
   std::atomic<int> rename_error{0};
   std::atomic<bool> writes_hang{false};  // until it is false again
   std::atomic<bool> syncs_hang{false};
+  std::atomic<bool> sees_no_file{false};  // as if every file appeared just after it was looked for
   std::atomic<int> writes{0};
   std::atomic<int> refusals{0};
 
@@ -56,6 +57,7 @@ class FaultyFileSystem : public FileSystem {
   int rename(const std::filesystem::path& from, const std::filesystem::path& to) override {
     return rename_error != 0 ? -rename_error : FileSystem::rename(from, to);
   }
+  bool exists(const std::filesystem::path& file) override { return !sees_no_file && FileSystem::exists(file); }
   std::int64_t freeSpace(const std::filesystem::path& directory) override {
     return std::min<std::int64_t>(room, FileSystem::freeSpace(directory));
   }
