@@ -5,8 +5,7 @@
 namespace demo_logger {
 
 const Arrival& Message::arrival() const {
-  const auto* joint_state = std::get_if<JointStateSample>(&sample);
-  return joint_state != nullptr ? joint_state->arrival : std::get_if<StreamSample>(&sample)->arrival;
+  return std::visit([](const auto& one) -> const Arrival& { return one.arrival; }, sample);
 }
 
 Inbox::Pushed Inbox::push(Message message) {

@@ -184,7 +184,7 @@ class Synchroniser::Implementation {
   std::vector<std::optional<Nanoseconds>> last_of_;
 };
 
-Synchroniser::Synchroniser(SynchroniserConfiguration configuration) {
+Synchroniser::Synchroniser(const SynchroniserConfiguration& configuration) {
   validate(configuration);
   implementation_ = std::make_unique<Implementation>(configuration);
 }

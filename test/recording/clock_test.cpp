@@ -1,35 +1,13 @@
-// Clocks that differ, jump, stall, or do not stamp at all.
+// Clocks that jump, stall, or are set back.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 
-#include "session.h"
+#include "clock_fixture.h"
 
 namespace demo_logger::testing_support {
 namespace {
-
-/// Joint states every 10 ms whose stamps, receipts and steady clock are chosen apart. The position counts them.
-class ClockTest : public ::testing::Test {
- protected:
-  /// `stamp_ms` and `receipt_ms` since kToday, `steady_ms` since the machine was started a day ago.
-  void joint(double stamp_ms, double receipt_ms, double steady_ms) {
-    JointStateSample sample = makeJointState(at(stamp_ms), at(receipt_ms), {"elbow"}, {static_cast<double>(sent_++)});
-    sample.arrival.steady = 86'400 * kNanosecondsPerSecond + static_cast<Nanoseconds>(steady_ms * 1e6);
-    session_.synchroniser.push(sample);
-  }
-  void joint(double stamp_ms, double receipt_ms) { joint(stamp_ms, receipt_ms, receipt_ms); }
-
-  std::size_t rows() const {
-    std::size_t rows = 0;
-    for (const auto& episode : session_.listener.episodes) rows += episode.rows.size();
-    return rows;
-  }
-
-  Session session_{numberStreams({Alignment::hold})};
-  int sent_ = 0;
-};
 
 TEST_F(ClockTest, AForwardJumpIsBelievedAfterTwoMessagesAndEndsTheEpisode) {
   session_.begin();
@@ -71,27 +49,6 @@ TEST_F(ClockTest, AStepOfLessThanASecondIsNoJump) {
   EXPECT_TRUE(session_.listener.jumps.empty());
   EXPECT_EQ(rows(), 3U);
 }
-
-/// Begins the next episode from within clockJumped(), as a recorder with autostart does.
-class RestartingListener : public RecordingListener {
- public:
-  explicit RestartingListener(Synchroniser& synchroniser) : synchroniser_(synchroniser) {}
-  void clockJumped(Nanoseconds stamp, double seconds) override {
-    RecordingListener::clockJumped(stamp, seconds);
-    rows_before = synchroniser_.counters().at("rows");
-    offset_before = synchroniser_.clockOffset();
-    received_before = synchroniser_.streams().at(0).received;
-    synchroniser_.begin(0);
-  }
-
-  // Of the episode that the jump ended.
-  std::size_t rows_before = 0;
-  std::optional<double> offset_before;
-  std::size_t received_before = 0;
-
- private:
-  Synchroniser& synchroniser_;
-};
 
 TEST_F(ClockTest, TheNextEpisodeMayBeginWithTheMessageThatShowedTheJump) {
   RestartingListener listener(session_.synchroniser);
@@ -296,166 +253,6 @@ TEST_F(ClockTest, AVeryLateMessageDoesNotSetTheClockBack) {
   EXPECT_EQ(rows(), 3U);
   EXPECT_EQ(session_.counter("pushed_late"), 1U);
   EXPECT_EQ(session_.listener.at(2, "s0_value"), 7.0) << "it is in force all the same";
-}
-
-TEST_F(ClockTest, TheOffsetIsTheMedianOfTheFirstSecondThenFrozen) {
-  session_.begin();
-  joint(0.0, 3.0);
-  joint(10.0, 13.0);
-  joint(20.0, 99.0);
-  joint(500.0, 504.0);
-  joint(900.0, 904.0);
-  joint(1003.0, 1003.5);  // after the first second
-  session_.advance(1002.9);
-  EXPECT_FALSE(session_.synchroniser.clockOffset().has_value());
-  session_.advance(1004.0);
-  EXPECT_DOUBLE_EQ(session_.synchroniser.clockOffset().value(), 0.004) << "median of 3, 3, 79, 4, 4 ms";
-  joint(5000.0, 5090.0);
-  session_.end(6000.0);
-  EXPECT_DOUBLE_EQ(session_.synchroniser.clockOffset().value(), 0.004);
-  EXPECT_EQ(session_.faultWith("this clock"), "");
-}
-
-TEST_F(ClockTest, AShortEpisodeFreezesTheOffsetWithWhatThereIs) {
-  session_.begin();
-  joint(0.0, 1.0);
-  joint(10.0, 13.0);
-  session_.end(20.0);
-  EXPECT_DOUBLE_EQ(session_.synchroniser.clockOffset().value(), 0.002);
-}
-
-TEST_F(ClockTest, StampsFarFromThisClockAreReported) {
-  session_.begin();
-  joint(0.0, 100.0);
-  joint(10.0, 110.000001);
-  session_.end(500.0);
-  EXPECT_EQ(session_.faultWith("this clock"), "") << "100 ms may be transport";
-
-  Session ahead(SynchroniserConfiguration{});
-  ahead.begin();
-  ahead.elbow(35.0, 0.0, 0.0);
-  ahead.end(500.0);
-  EXPECT_EQ(ahead.faultWith("this clock"), "joint-state stamps are -35.0 ms from this clock (transport or skew)");
-  EXPECT_EQ(ahead.synchroniser.faults()[0].severity, Severity::warning);
-}
-
-TEST_F(ClockTest, AnUnstampedStreamIsPlacedByReceipt) {
-  session_.begin();
-  StreamSample sample = makeNumber(0, at(5.0), 1.0);
-  session_.synchroniser.push(0, sample);
-  joint(7.0, 8.0);
-  session_.end(500.0);
-  EXPECT_EQ(session_.listener.at(0, "s0_value"), 1.0);
-  EXPECT_EQ(session_.listener.at(0, "s0_age"), 0.002);
-  const StreamMetadata stream = session_.synchroniser.streams()[0];
-  EXPECT_FALSE(stream.stamped);
-  EXPECT_EQ(stream.receipt_delay.max, 0.0) << "a message without stamp has no delay to observe";
-}
-
-TEST_F(ClockTest, AnUnstampedStreamOnADistantClockIsAnError) {
-  session_.begin();
-  session_.synchroniser.push(0, makeNumber(0, at(5.0), 1.0));
-  joint(-2500.0, 6.0);
-  session_.end(500.0);
-  EXPECT_TRUE(std::isnan(session_.listener.at(0, "s0_value")));
-  const std::vector<Fault> faults = session_.synchroniser.faults();
-  ASSERT_EQ(faults.size(), 2U);
-  EXPECT_EQ(faults[0].what, "joint-state stamps are 2506.0 ms from this clock (transport or skew)");
-  EXPECT_EQ(faults[1].what,
-            "stream s0 (/s0) has no stamps and is placed by this machine's clock, but the joint states' clock is 2.506 "
-            "s away: its columns are useless. Synchronise the clocks, or set correct_clock_offset");
-  EXPECT_EQ(faults[1].severity, Severity::error);
-}
-
-TEST_F(ClockTest, CorrectionMovesUnstampedStreamsByTheOffset) {
-  SynchroniserConfiguration configuration = numberStreams({Alignment::hold, Alignment::hold});
-  configuration.correct_clock_offset = true;
-  Session session(configuration);
-  session.begin();
-  session.synchroniser.push(0, makeNumber(0, at(5.0), 1.0));  // −2495 ms on the robot's clock
-  session.synchroniser.push(1, makeNumber(at(-2496.0), at(5.0), 2.0));
-  session.elbow(-2494.0, 0.0, 6.0);
-  session.elbow(-1400.0, 0.0, 1100.0);
-  session.advance(1005.0);
-  EXPECT_TRUE(session.listener.rows().empty()) << "nothing can be placed before the offset is known";
-  session.advance(1200.0);
-  ASSERT_EQ(session.listener.rows().size(), 2U);
-  EXPECT_EQ(session.synchroniser.clockOffset().value(), 2.5);
-  EXPECT_EQ(session.listener.at(0, "s0_value"), 1.0);
-  EXPECT_EQ(session.listener.at(0, "s0_age"), 0.001);
-  EXPECT_EQ(session.listener.at(0, "s1_age"), 0.002) << "stamped streams stay";
-  for (const Fault& fault : session.synchroniser.faults()) EXPECT_EQ(fault.severity, Severity::warning) << fault.what;
-}
-
-TEST_F(ClockTest, CorrectionWorksInAnEpisodeShorterThanTheMeasurement) {
-  SynchroniserConfiguration configuration = numberStreams({Alignment::hold});
-  configuration.correct_clock_offset = true;
-  Session session(configuration);
-  session.begin();
-  session.synchroniser.push(0, makeNumber(0, at(5.0), 1.0));
-  session.elbow(-9994.0, 0.0, 6.0);
-  session.advance(100.0);
-  session.end(200.0);
-  ASSERT_EQ(session.listener.rows().size(), 1U);
-  EXPECT_EQ(session.listener.at(0, "s0_age"), 0.001);
-}
-
-TEST_F(ClockTest, CorrectionMeasuresAnewAfterAJump) {
-  SynchroniserConfiguration configuration = numberStreams({Alignment::hold});
-  configuration.correct_clock_offset = true;
-  Session session(configuration);
-  RestartingListener listener(session.synchroniser);
-  session.begin();
-  for (int i = 0; i < 400; ++i) {
-    const double now = 10.0 * i;
-    session.synchroniser.push(0, makeNumber(0, at(now), i));
-    session.elbow(now + (i < 200 ? 3000.0 : 8000.0) + 1.0, i, now + 1.0);
-    session.synchroniser.advance(at(now), listener);
-  }
-  session.synchroniser.end(at(5000.0), listener);
-  ASSERT_EQ(listener.episodes.size(), 2U);
-  ASSERT_EQ(listener.episodes[0].rows.size(), 200U);
-  ASSERT_EQ(listener.episodes[1].rows.size(), 200U);
-  for (const Row& row : listener.episodes[0].rows) {
-    EXPECT_EQ(row.values[4], row.values[0]) << "each joint state has its own command";
-    EXPECT_EQ(row.values[5], 0.001);
-  }
-  // The command received with the first joint state after the jump was received before it; the next is corrected.
-  for (std::size_t i = 2; i < 200; ++i) EXPECT_EQ(listener.episodes[1].rows[i].values[5], 0.001) << i;
-  EXPECT_EQ(session.synchroniser.clockOffset().value(), -8.0);
-}
-
-TEST_F(ClockTest, UnstampedJointStatesAreKeyedByReceipt) {
-  session_.begin();
-  session_.synchroniser.push(makeJointState(0, at(10.0), {"elbow"}, {1.0}));
-  session_.synchroniser.push(makeJointState(0, at(20.0), {"elbow"}, {2.0}));
-  session_.end(500.0);
-  ASSERT_EQ(session_.listener.rows().size(), 2U);
-  EXPECT_EQ(session_.listener.rows()[0].stamp, at(10.0));
-  EXPECT_EQ(session_.listener.at(0, "receipt_delay"), 0.0);
-  EXPECT_EQ(session_.synchroniser.clockOffset().value(), 0.0);
-}
-
-TEST_F(ClockTest, AZeroStampFromAPublisherThatStampsIsDropped) {
-  session_.begin();
-  joint(0.0, 1.0);
-  session_.synchroniser.push(makeJointState(0, at(11.0), {"elbow"}, {2.0}));
-  session_.number(0, 1.0, 1.0);
-  StreamSample sample = makeNumber(0, at(12.0), 2.0);
-  session_.synchroniser.push(0, sample);
-  sample.arrival.publisher = "/another";  // has not stamped so far
-  sample.arrival.receipt = at(13.0);
-  session_.synchroniser.push(0, sample);
-  session_.end(500.0);
-  EXPECT_EQ(rows(), 1U);
-  EXPECT_EQ(session_.counter("zero_stamps"), 2U);
-  EXPECT_EQ(session_.synchroniser.streams()[0].dropped, 1U);
-  EXPECT_EQ(session_.synchroniser.streams()[0].received, 3U);
-  EXPECT_EQ(session_.faultWith("stream s0"),
-            "stream s0 (/s0) had a message with stamp 0 from a publisher that stamped its messages before; it was "
-            "dropped");
-  EXPECT_EQ(session_.faultWith("a joint state"),
-            "a joint state came with stamp 0 from a publisher that stamped its messages before; it was dropped");
 }
 
 }  // namespace

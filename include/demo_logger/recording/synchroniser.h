@@ -51,7 +51,7 @@ class RowListener {
 class Synchroniser {
  public:
   /// Throws ConfigurationError (see validate).
-  explicit Synchroniser(SynchroniserConfiguration configuration);
+  explicit Synchroniser(const SynchroniserConfiguration& configuration);
   ~Synchroniser();
   Synchroniser(Synchroniser&&) noexcept;
   Synchroniser& operator=(Synchroniser&&) noexcept;
