@@ -32,21 +32,26 @@ RowWriter::RowWriter(FileSystem& file_system, FileDescriptor descriptor, std::fi
 
 void RowWriter::write(const Row& row) {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    std::unique_lock<std::mutex> lock(mutex_);
     if (progress_.given == 0) {
       progress_.first_stamp = row.stamp;
     }
+    if (options_.may_wait) {
+      progressed_.wait(lock, [this] { return hasRoom() || refused_; });
+    }
     progress_.last_stamp = row.stamp;
     ++progress_.given;
-    const std::uint64_t waiting = progress_.given - progress_.written - progress_.not_written;
-    if (waiting * queue_.bytesPerRow() > options_.queue_bytes) {
+    if (!hasRoom()) {
       ++progress_.not_written;
       return;
     }
+    ++waiting_;
     queue_.add(row);
   }
   rows_waiting_.notify_one();
 }
+
+bool RowWriter::hasRoom() const { return (waiting_ + 1) * queue_.bytesPerRow() <= options_.queue_bytes; }
 
 WritingProgress RowWriter::progress() const {
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -97,6 +102,7 @@ void RowWriter::writeBatch() {
       written += rows;
       advance(rows, batch_.stamp(written - 1));
     }
+    noteRefusal(data_.error() != 0);
     if (data_.error() == 0) {
       faults_.over(DiskFaultKind::rows);
       continue;
@@ -125,6 +131,7 @@ std::size_t RowWriter::appendText() {
 
 void RowWriter::advance(std::size_t rows, Nanoseconds last_stamp) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  waiting_ -= rows;
   progress_.written += rows;
   progress_.last_written_stamp = last_stamp;
   progress_.bytes = static_cast<std::uint64_t>(data_.size());
@@ -135,7 +142,16 @@ void RowWriter::giveUp(std::size_t rows) {
   gave_up_ = true;
   text_.clear();
   const std::lock_guard<std::mutex> lock(mutex_);
+  waiting_ -= rows;
   progress_.not_written += rows;
+}
+
+void RowWriter::noteRefusal(bool refused) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    refused_ = refused;
+  }
+  progressed_.notify_one();
 }
 
 void RowWriter::reportRefusal(std::size_t waiting) {

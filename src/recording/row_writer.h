@@ -50,6 +50,8 @@ class RowWriter {
   std::size_t appendText();
   void advance(std::size_t rows, Nanoseconds last_stamp);
   void giveUp(std::size_t rows);
+  bool hasRoom() const;  // for one more row; under the mutex
+  void noteRefusal(bool refused);
   void reportRefusal(std::size_t waiting);
   void waitForRoom();
   bool isClosing() const;
@@ -70,7 +72,10 @@ class RowWriter {
   mutable std::mutex mutex_;  // nobody holds it while waiting for the disk
   std::condition_variable rows_waiting_;
   std::condition_variable closing_changed_;
+  std::condition_variable progressed_;
   RowBatch queue_;
+  std::uint64_t waiting_ = 0;  // rows in queue_ and in batch_
+  bool refused_ = false;       // what was written last
   WritingProgress progress_;
   bool closing_ = false;
 

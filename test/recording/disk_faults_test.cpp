@@ -158,6 +158,25 @@ TEST_F(DiskFaultsTest, ASyncThatHangsDelaysNoWrite) {
   disk_.syncs_hang = false;
 }
 
+TEST_F(DiskFaultsTest, ASourceThatMayWaitLosesNothingToASlowDiskAndDoesNotHangOnAFullOne) {
+  EpisodeWriterOptions patient = options();
+  patient.queue_bytes = 5 * (sizeof(Nanoseconds) + 2 * sizeof(double));  // 5 rows
+  patient.may_wait = true;
+  const auto writer = makeWriter(patient);
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    writer->write(knownRow(k));
+  }
+  EXPECT_EQ(writer->rowsNotWritten(), 0U);
+  disk_.room = 0;
+  for (std::uint64_t k = 100; k < 200; ++k) {
+    writer->write(knownRow(k));
+  }
+  EXPECT_GE(writer->rowsNotWritten(), 90U);
+  disk_.room = 1'000'000;
+  const Table table = readTable(writer->finish(Metadata{}));
+  EXPECT_EQ(table.rows.size() + writer->rowsNotWritten(), 200U);
+}
+
 TEST_F(DiskFaultsTest, AnEpisodeOfWhichNothingCouldBeWrittenSaysSoAndLeavesNothing) {
   disk_.room = 0;
   const auto writer = makeWriter(options());

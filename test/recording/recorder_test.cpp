@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "demo_logger/formats/demonstration_file.h"
 #include "demo_logger/trajectory/error.h"
 #include "test/recording/recorder_fixture.h"
 
@@ -52,6 +53,23 @@ TEST_F(RecorderTest, SamplesInRowsOnDisk) {
   ASSERT_EQ(metadata.streams.size(), 1U);
   EXPECT_EQ(metadata.streams[0].received, 200U);
   EXPECT_EQ(std::get<double>(metadata.parameters.at("clock_offset")), 0.001);
+}
+
+TEST_F(RecorderTest, WhatIsRecordedIsReadBackAsADemonstrationWithoutARemark) {
+  make(configuration());
+  recorder_->start(at(0), "", "", "", "");
+  run(0.0, 1.0);
+  const LoadedDemonstration loaded = readDemonstration(recorder_->stop(at(1.0), "success", "").file);
+  EXPECT_TRUE(loaded.notes.empty()) << loaded.notes.front();
+  const Demonstration& demonstration = loaded.demonstration;
+  ASSERT_EQ(demonstration.columns.size(), 14U);
+  EXPECT_EQ(demonstration.columns[0].name, "q_shoulder");
+  EXPECT_EQ(demonstration.columns[0].role, Role::state);
+  EXPECT_EQ(demonstration.columns[7].name, "u_vx");
+  EXPECT_EQ(demonstration.columns[7].role, Role::control);
+  ASSERT_EQ(demonstration.time.size(), 100U);
+  EXPECT_EQ(demonstration.time[99], 0.99);
+  EXPECT_EQ(demonstration.values(99, 7), 0.99);
 }
 
 TEST_F(RecorderTest, AutostartBeginsWithTheFirstJointStateAndOnlyOnce) {

@@ -21,6 +21,8 @@ struct EpisodeWriterOptions {
   double sync_interval = 1.0;    // [s] between fdatasync, and between updates of the sidecar
   double retry_interval = 1.0;   // [s] between attempts on a full disk
   std::size_t queue_bytes = 64 * 1024 * 1024;  // rows that wait in memory for the disk; more are counted, not written
+  /// When the queue is full and the disk only slow, write() waits: for sources that can wait, such as a bag.
+  bool may_wait = false;
 };
 
 /// Writes one episode to disk as it happens, from a thread of its own:
@@ -42,7 +44,7 @@ class EpisodeWriter {
 
   const std::string& id() const;       // "demo_000001"
   std::filesystem::path file() const;  // the final name of the CSV
-  void write(const Row& row);          // never blocks on the disk
+  void write(const Row& row);          // never blocks on the disk (unless may_wait)
   /// Kept for the sidecar, which is brought up to date on disk each second and at the end.
   void update(const Metadata& metadata);
 
