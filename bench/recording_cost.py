@@ -219,8 +219,8 @@ def stop_table(bench, repeats, duration):
         publisher = bench.publish(1000, duration, 1)
         assert publisher.stdout.readline().strip() == "begin"
         publisher.stdout.readline()
-        rospy.wait_for_service("/demo_logger_node/stop", 10)
-        stop = rospy.ServiceProxy("/demo_logger_node/stop", Stop)
+        rospy.wait_for_service("/demo_logger/stop", 10)
+        stop = rospy.ServiceProxy("/demo_logger/stop", Stop)
         before = time.monotonic()
         reply = stop("success", "")
         service.append(time.monotonic() - before)

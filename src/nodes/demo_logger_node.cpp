@@ -106,7 +106,7 @@ DemoLoggerNode::DemoLoggerNode(const ros::NodeHandle& node, const ros::NodeHandl
 void DemoLoggerNode::close() {
   readTeleopMap();
   const Reply reply = recorder_.close();
-  if (!reply.message.empty()) {
+  if (!reply.success || !reply.id.empty()) {
     log(reply);
   }
   publishStatusIfChanged();

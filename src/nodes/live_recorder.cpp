@@ -29,20 +29,16 @@ Nanoseconds steadyNow() {
 }
 
 /// When on the steady clock a message with this receipt (ROS time) was received, seen from now.
-Nanoseconds steadyReceipt(const ros::Time& receipt, bool simulated_time) {
-  if (simulated_time) {
-    return toNanoseconds(receipt);
-  }
+Nanoseconds steadyReceipt(const ros::Time& receipt) {
   const Nanoseconds queued = toNanoseconds(ros::Time::now()) - toNanoseconds(receipt);
   const bool clock_was_set = queued < 0 || queued > kLongestQueueing;
   return clock_was_set ? steadyNow() : steadyNow() - queued;
 }
 
 template <class Event>
-Arrival arrivalOf(const Event& event, Nanoseconds steady) {
+Arrival arrivalOf(const Event& event) {
   Arrival arrival;
   arrival.receipt = toNanoseconds(event.getReceiptTime());
-  arrival.steady = steady;
   arrival.publisher = event.getPublisherName();
   return arrival;
 }
@@ -89,7 +85,7 @@ void LiveRecorder::listen(std::size_t source, const std::string& name, const std
   topics_[source].name = name;
   topics_[source].topic = node_.resolveName(topic);
   const boost::function<void(const Event&)> keep = [this, source](const Event& event) {
-    reception_.push({source, event, steadyReceipt(event.getReceiptTime(), simulated_time_)});
+    reception_.push({source, event, steadyReceipt(event.getReceiptTime())});
   };
   subscribers_.push_back(node_.subscribe<Message, const Event&>(
       topics_[source].topic, kSubscriberQueue, keep, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
@@ -144,7 +140,10 @@ void LiveRecorder::forward(Received& received, Nanoseconds watermark) {
   const auto place = [&](Arrival arrival) {
     if (arrival.receipt == 0) {  // received before simulated time began
       arrival.receipt = watermark;
-      arrival.steady = watermark;
+    }
+    arrival.steady = received.steady;
+    if (simulated_time_) {
+      simulated_receipts_.place(arrival);
     }
     topic.last = arrival.receipt;
     return arrival;
@@ -153,13 +152,13 @@ void LiveRecorder::forward(Received& received, Nanoseconds watermark) {
     if (auto* event = std::get_if<Received::JointStates>(&received.message)) {
       topic.type = "sensor_msgs/JointState";
       // The message is ours alone unless another subscriber of this process shares it; then the event gives a copy.
-      recorder_.push(toJointStateSample(std::move(*event->getMessage()), place(arrivalOf(*event, received.steady))));
+      recorder_.push(toJointStateSample(std::move(*event->getMessage()), place(arrivalOf(*event))));
       return;
     }
     const auto& event = std::get<Received::Stream>(received.message);
     const RawMessage raw = rawOf(*event.getConstMessage(), bytes_);
     topic.type = raw.datatype;
-    recorder_.push(received.source - 1, toStreamSample(raw, place(arrivalOf(event, received.steady))));
+    recorder_.push(received.source - 1, toStreamSample(raw, place(arrivalOf(event))));
   } catch (const Error& error) {
     ++topic.unreadable;
     topic.problem = error.what();

@@ -15,6 +15,7 @@
 
 #include "demo_logger/recording/recorder.h"
 #include "src/nodes/reception_queue.h"
+#include "src/nodes/simulated_receipts.h"
 
 namespace demo_logger {
 
@@ -91,6 +92,7 @@ class LiveRecorder {
   std::vector<TopicStatus> topics_;
   std::vector<Received> pending_;
   std::vector<std::uint8_t> bytes_;
+  SimulatedReceipts simulated_receipts_;
   std::string problem_;
 
   std::vector<ros::Subscriber> subscribers_;

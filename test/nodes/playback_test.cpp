@@ -31,7 +31,8 @@ class PlaybackTest : public RecorderUnderTest {
     arguments.push_back("joint_states:=" + joint_states);
     launch(arguments);
     EXPECT_TRUE(waitUntil([&] { return !statuses_.empty() || !process_->runs(); })) << process_->output();
-    std::vector<std::string> command = {"/usr/bin/python3", "/usr/bin/rosbag", "play", "--wait-for-subscribers", "-q"};
+    std::vector<std::string> command = {"/usr/bin/python3", "/usr/bin/rosbag", "play", "--wait-for-subscribers",
+                                        "--queue",          "20000",           "-q"};
     command.insert(command.end(), play_options.begin(), play_options.end());
     command.insert(command.end(), {(data_ / name).string(), "--topics", joint_states, "/cmd_vel", "/clock"});
     NodeProcess player(command, (directory_ / "player").string());
