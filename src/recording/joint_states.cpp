@@ -56,7 +56,8 @@ std::optional<JointRow> JointStates::read(JointStateSample& sample, const char* 
   watchNames(*mapping, arrival);
   ready_ = true;
   const bool stamped = arrival.stamp != 0;
-  values.push_back(stamped ? toSeconds(arrival.receipt - arrival.stamp) : 0.0);
+  if (!stamped) reportUnstamped(arrival);
+  values.push_back(stamped ? toSeconds(arrival.receipt - arrival.stamp) : kNaN);
   JointRow row{
       *stamp, arrival.receipt, reception.received, steadyOf(arrival), reception.sequence, stamped, std::move(values),
       {}};
@@ -125,6 +126,13 @@ std::optional<Nanoseconds> JointStates::place(const JointStateSample& sample, co
            " came with stamp 0 from a publisher that stamped its messages before; it was dropped";
   });
   return std::nullopt;
+}
+
+void JointStates::reportUnstamped(const Arrival& arrival) {
+  ledger_.report(FaultKind::unstamped, kJointStatesSubject, arrival.receipt, [&] {
+    return "joint states" + ofPublisher(arrival.publisher) +
+           " have no stamps: their rows are placed by receipt, and the transport delay is in them";
+  });
 }
 
 void JointStates::watchPublishers(const JointMapping& mapping, Nanoseconds receipt) {

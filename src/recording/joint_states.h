@@ -67,6 +67,7 @@ class JointStates {
   /// Where the message has the arm's joints; nullptr (counted, reported) if it has none that can be used.
   const JointMapping* mapJoints(JointStateSample& sample, const char* rejected, Nanoseconds receipt);
   std::optional<Nanoseconds> place(const JointStateSample& sample, const Reception& reception);
+  void reportUnstamped(const Arrival& arrival);
   void watchPublishers(const JointMapping& mapping, Nanoseconds receipt);
   void watchNames(const JointMapping& mapping, const Arrival& arrival);
   std::vector<double> valuesOf(const JointStateSample& sample, const JointMapping& mapping);

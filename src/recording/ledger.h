@@ -43,6 +43,7 @@ enum class FaultKind {
   names_changed,
   frame_changed,
   two_publishers,
+  unstamped,
   zero_stamp,
   non_finite_value,
   non_unit_quaternion,

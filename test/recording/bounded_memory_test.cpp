@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "session.h"
+#include "timeline.h"
 
 namespace demo_logger::testing_support {
 namespace {
@@ -16,91 +16,91 @@ constexpr int kMessages = 1'000'000;
 constexpr std::size_t kCapacity = 65536;
 
 TEST(BoundedMemoryTest, AStreamWithoutJointStatesKeepsTheNewestMessages) {
-  Session session(numberStreams({Alignment::hold}));
-  session.begin();
+  Timeline timeline(numberStreams({Alignment::hold}));
+  timeline.begin();
   std::size_t largest = 0;
   for (int i = 0; i < kMessages; ++i) {
-    session.number(0, i, i);
-    session.advance(i);
-    largest = std::max(largest, session.synchroniser.size());
+    timeline.number(0, i, i);
+    timeline.advance(i);
+    largest = std::max(largest, timeline.synchroniser.size());
   }
   EXPECT_LE(largest, kCapacity + 2);
-  session.elbow(kMessages, 0.0);
-  session.end(2.0 * kMessages);
-  EXPECT_EQ(session.listener.at(0, "s0_value"), kMessages - 1.0);
-  EXPECT_EQ(session.counter("overflow"), kMessages - kCapacity);
-  EXPECT_EQ(session.synchroniser.streams()[0].dropped, kMessages - kCapacity);
+  timeline.elbow(kMessages, 0.0);
+  timeline.end(2.0 * kMessages);
+  EXPECT_EQ(timeline.listener.at(0, "s0_value"), kMessages - 1.0);
+  EXPECT_EQ(timeline.counter("overflow"), kMessages - kCapacity);
+  EXPECT_EQ(timeline.synchroniser.streams()[0].dropped, kMessages - kCapacity);
   EXPECT_EQ(
-      session.faultWith("ahead"),
+      timeline.faultWith("ahead"),
       "stream s0 (/s0) sent more than 65536 messages ahead of the joint states; the oldest are lost. Do both keep "
       "the same clock?");
 }
 
 TEST(BoundedMemoryTest, AStreamOfTheFutureIsBounded) {
-  Session session(numberStreams({Alignment::linear}));
-  session.begin();
+  Timeline timeline(numberStreams({Alignment::linear}));
+  timeline.begin();
   std::mt19937 random(1);
   std::size_t largest = 0;
   for (int i = 0; i < kMessages; ++i) {
-    session.number(0, 1e9 + static_cast<double>(random() % 1'000'000), 0.0, i);
-    if (i % 10 == 0) session.elbow(i, 0.0, i);
-    session.advance(i);
-    largest = std::max(largest, session.synchroniser.size());
+    timeline.number(0, 1e9 + static_cast<double>(random() % 1'000'000), 0.0, i);
+    if (i % 10 == 0) timeline.elbow(i, 0.0, i);
+    timeline.advance(i);
+    largest = std::max(largest, timeline.synchroniser.size());
   }
   EXPECT_LE(largest, kCapacity + 1000);
-  session.end(2.0 * kMessages);
-  EXPECT_EQ(session.listener.rows().size(), kMessages / 10U) << "no row is lost by it";
+  timeline.end(2.0 * kMessages);
+  EXPECT_EQ(timeline.listener.rows().size(), kMessages / 10U) << "no row is lost by it";
 }
 
 TEST(BoundedMemoryTest, AnInboxThatNobodyEmptiesIsBounded) {
-  Session session(SynchroniserConfiguration{});
-  session.begin();
-  for (int i = 0; i < kMessages; ++i) session.elbow(i, i);
-  EXPECT_EQ(session.synchroniser.size(), kCapacity);
-  EXPECT_EQ(session.counter("overflow"), kMessages - kCapacity);
-  session.end(2.0 * kMessages);
-  EXPECT_EQ(session.listener.rows().size(), kCapacity);
-  EXPECT_EQ(session.counter("overflow"), kMessages - kCapacity);
-  EXPECT_EQ(session.listener.rows().back().values[0], kMessages - 1.0) << "the newest are kept";
-  EXPECT_EQ(session.faultWith("synchronised"),
+  Timeline timeline(SynchroniserConfiguration{});
+  timeline.begin();
+  for (int i = 0; i < kMessages; ++i) timeline.elbow(i, i);
+  EXPECT_EQ(timeline.synchroniser.size(), kCapacity);
+  EXPECT_EQ(timeline.counter("overflow"), kMessages - kCapacity);
+  timeline.end(2.0 * kMessages);
+  EXPECT_EQ(timeline.listener.rows().size(), kCapacity);
+  EXPECT_EQ(timeline.counter("overflow"), kMessages - kCapacity);
+  EXPECT_EQ(timeline.listener.rows().back().values[0], kMessages - 1.0) << "the newest are kept";
+  EXPECT_EQ(timeline.faultWith("synchronised"),
             "more than 65536 messages wait to be synchronised; the oldest are lost. Is the machine overloaded?");
 }
 
 TEST(BoundedMemoryTest, RowsThatWaitForeverAreBoundedAndNoneIsLost) {
   SynchroniserConfiguration configuration;
   configuration.max_wait = 1e9;
-  Session session(configuration);
-  session.begin();
+  Timeline timeline(configuration);
+  timeline.begin();
   std::size_t largest = 0;
   for (int i = 0; i < kMessages / 5; ++i) {
-    session.elbow(i, i);
-    session.advance(i + 1);
-    largest = std::max(largest, session.synchroniser.size());
+    timeline.elbow(i, i);
+    timeline.advance(i + 1);
+    largest = std::max(largest, timeline.synchroniser.size());
   }
-  session.end(2.0 * kMessages);
+  timeline.end(2.0 * kMessages);
   EXPECT_LE(largest, kCapacity + 2);
-  EXPECT_EQ(session.listener.rows().size(), kMessages / 5U);
-  EXPECT_EQ(session.counter("overflow"), kMessages / 5 - kCapacity);
-  EXPECT_EQ(session.faultWith("rows wait"),
+  EXPECT_EQ(timeline.listener.rows().size(), kMessages / 5U);
+  EXPECT_EQ(timeline.counter("overflow"), kMessages / 5 - kCapacity);
+  EXPECT_EQ(timeline.faultWith("rows wait"),
             "more than 65536 rows wait; the oldest is finished before its wait is over. Are max_wait or "
             "wait_for_streams too long?");
 }
 
 TEST(BoundedMemoryTest, ALongEpisodeHoldsNoMoreThanItsWait) {
-  Session session(numberStreams({Alignment::hold, Alignment::linear}));
-  session.begin();
+  Timeline timeline(numberStreams({Alignment::hold, Alignment::linear}));
+  timeline.begin();
   std::size_t largest = 0;
   for (int i = 0; i < kMessages / 5; ++i) {
-    session.elbow(i, 0.0);
-    session.number(0, i, 0.0);
-    session.number(1, i, 0.0);
-    session.advance(i);
-    if (i % 1000 == 0) session.listener.episodes.clear();
-    if (i % 1000 == 0) session.listener.episodes.emplace_back();
-    largest = std::max(largest, session.synchroniser.size());
+    timeline.elbow(i, 0.0);
+    timeline.number(0, i, 0.0);
+    timeline.number(1, i, 0.0);
+    timeline.advance(i);
+    if (i % 1000 == 0) timeline.listener.episodes.clear();
+    if (i % 1000 == 0) timeline.listener.episodes.emplace_back();
+    largest = std::max(largest, timeline.synchroniser.size());
   }
   EXPECT_LT(largest, 2600U) << "of 1 kHz: 100 ms of rows, and 1.1 s of each stream";
-  EXPECT_EQ(session.counter("overflow"), 0U);
+  EXPECT_EQ(timeline.counter("overflow"), 0U);
 }
 
 TEST(BoundedMemoryTest, AnythingMayBePushed) {
@@ -108,7 +108,7 @@ TEST(BoundedMemoryTest, AnythingMayBePushed) {
   configuration.streams.push_back(makeStream("any", std::nullopt));
   for (const bool correct : {false, true}) {
     configuration.correct_clock_offset = correct;
-    Session session(configuration);
+    Timeline timeline(configuration);
     std::mt19937_64 random(7);
     const auto anyInstant = [&random]() -> Nanoseconds {
       switch (random() % 4) {
@@ -128,20 +128,20 @@ TEST(BoundedMemoryTest, AnythingMayBePushed) {
         sample.arrival.steady = anyInstant();
         sample.position.resize(random() % 3);
         if (random() % 3 == 0) sample.names = {"elbow", "wrist"};
-        session.synchroniser.push(sample);
+        timeline.synchroniser.push(sample);
       } else {
         StreamSample sample = makeStreamSample(static_cast<StreamType>(random() % 6), anyInstant(), anyInstant(), {});
         sample.values.resize(random() % 8, std::numeric_limits<double>::quiet_NaN());
         if (random() % 2 == 0) sample.components.resize(random() % 8, "axis");
         if (random() % 2 == 0) sample.units.resize(random() % 8, "m");
-        session.synchroniser.push(random() % 5, sample);
+        timeline.synchroniser.push(random() % 5, sample);
       }
-      if (random() % 10 == 0) session.synchroniser.advance(anyInstant(), session.listener);
-      if (random() % 100 == 0) session.synchroniser.begin(anyInstant());
-      if (random() % 200 == 0) session.synchroniser.end(anyInstant(), session.listener);
+      if (random() % 10 == 0) timeline.synchroniser.advance(anyInstant(), timeline.listener);
+      if (random() % 100 == 0) timeline.synchroniser.begin(anyInstant());
+      if (random() % 200 == 0) timeline.synchroniser.end(anyInstant(), timeline.listener);
     }
-    session.synchroniser.end(std::numeric_limits<Nanoseconds>::max(), session.listener);
-    for (const auto& episode : session.listener.episodes) {
+    timeline.synchroniser.end(std::numeric_limits<Nanoseconds>::max(), timeline.listener);
+    for (const auto& episode : timeline.listener.episodes) {
       for (std::size_t i = 0; i < episode.rows.size(); ++i) {
         ASSERT_EQ(episode.rows[i].values.size(), episode.columns.size());
         ASSERT_TRUE(i == 0 || episode.rows[i].stamp > episode.rows[i - 1].stamp);

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "session.h"
+#include "timeline.h"
 
 namespace demo_logger::testing_support {
 
@@ -39,17 +39,17 @@ class ClockTest : public ::testing::Test {
   void joint(double stamp_ms, double receipt_ms, double steady_ms) {
     JointStateSample sample = makeJointState(at(stamp_ms), at(receipt_ms), {"elbow"}, {static_cast<double>(sent_++)});
     sample.arrival.steady = 86'400 * kNanosecondsPerSecond + static_cast<Nanoseconds>(steady_ms * 1e6);
-    session_.synchroniser.push(sample);
+    timeline_.synchroniser.push(sample);
   }
   void joint(double stamp_ms, double receipt_ms) { joint(stamp_ms, receipt_ms, receipt_ms); }
 
   std::size_t rows() const {
     std::size_t rows = 0;
-    for (const auto& episode : session_.listener.episodes) rows += episode.rows.size();
+    for (const auto& episode : timeline_.listener.episodes) rows += episode.rows.size();
     return rows;
   }
 
-  Session session_{numberStreams({Alignment::hold})};
+  Timeline timeline_{numberStreams({Alignment::hold})};
   int sent_ = 0;
 };
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "session.h"
+#include "timeline.h"
 
 namespace demo_logger::testing_support {
 namespace {
@@ -18,126 +18,126 @@ SynchroniserConfiguration armOf(Names joints) {
 }
 
 TEST(JointStatesTest, JointsAreFoundByNameInAnyOrder) {
-  Session session(armOf({"a", "b", "c"}));
-  session.begin();
-  session.joint(0.0, {"a", "b", "c"}, {1.0, 2.0, 3.0});
-  session.joint(10.0, {"c", "a", "b"}, {30.0, 10.0, 20.0});
-  session.end(200.0);
-  EXPECT_EQ(session.listener.columnNames(),
+  Timeline timeline(armOf({"a", "b", "c"}));
+  timeline.begin();
+  timeline.joint(0.0, {"a", "b", "c"}, {1.0, 2.0, 3.0});
+  timeline.joint(10.0, {"c", "a", "b"}, {30.0, 10.0, 20.0});
+  timeline.end(200.0);
+  EXPECT_EQ(timeline.listener.columnNames(),
             (Names{"q_a", "q_b", "q_c", "dq_a", "dq_b", "dq_c", "tau_a", "tau_b", "tau_c", "receipt_delay"}));
-  EXPECT_EQ(session.listener.at(1, "q_a"), 10.0);
-  EXPECT_EQ(session.listener.at(1, "q_b"), 20.0);
-  EXPECT_EQ(session.listener.at(1, "q_c"), 30.0);
-  EXPECT_TRUE(std::isnan(session.listener.at(0, "dq_a"))) << "velocities were not sent";
-  EXPECT_TRUE(session.synchroniser.faults().empty()) << "order may change";
+  EXPECT_EQ(timeline.listener.at(1, "q_a"), 10.0);
+  EXPECT_EQ(timeline.listener.at(1, "q_b"), 20.0);
+  EXPECT_EQ(timeline.listener.at(1, "q_c"), 30.0);
+  EXPECT_TRUE(std::isnan(timeline.listener.at(0, "dq_a"))) << "velocities were not sent";
+  EXPECT_TRUE(timeline.synchroniser.faults().empty()) << "order may change";
 }
 
 TEST(JointStatesTest, WithoutAListTheFirstValidMessageNamesTheJoints) {
-  Session session(SynchroniserConfiguration{});
-  session.begin();
-  EXPECT_TRUE(session.synchroniser.joints().empty());
-  session.joint(0.0, {"x", "y"}, {1.0});  // sizes disagree
-  session.joint(10.0, {"shoulder", "elbow"}, {1.0, 2.0});
-  session.end(200.0);
-  EXPECT_EQ(session.synchroniser.joints(), (Names{"shoulder", "elbow"}));
-  EXPECT_EQ(session.listener.rows().size(), 1U);
-  EXPECT_EQ(session.counter("malformed_joint_states"), 1U);
-  EXPECT_EQ(session.faultWith("cannot be used"),
+  Timeline timeline(SynchroniserConfiguration{});
+  timeline.begin();
+  EXPECT_TRUE(timeline.synchroniser.joints().empty());
+  timeline.joint(0.0, {"x", "y"}, {1.0});  // sizes disagree
+  timeline.joint(10.0, {"shoulder", "elbow"}, {1.0, 2.0});
+  timeline.end(200.0);
+  EXPECT_EQ(timeline.synchroniser.joints(), (Names{"shoulder", "elbow"}));
+  EXPECT_EQ(timeline.listener.rows().size(), 1U);
+  EXPECT_EQ(timeline.counter("malformed_joint_states"), 1U);
+  EXPECT_EQ(timeline.faultWith("cannot be used"),
             "a joint state cannot be used: it has 2 names, 1 positions, 0 velocities and 0 efforts; every array should "
             "be empty or have one value per name");
 }
 
 TEST(JointStatesTest, JointsWithoutNamesAreNumbered) {
-  Session session(SynchroniserConfiguration{});
-  session.begin();
-  session.joint(0.0, {}, {1.0, 2.0});
-  session.end(200.0);
-  EXPECT_EQ(session.synchroniser.joints(), (Names{"joint0", "joint1"}));
-  EXPECT_EQ(session.listener.at(0, "q_joint1"), 2.0);
+  Timeline timeline(SynchroniserConfiguration{});
+  timeline.begin();
+  timeline.joint(0.0, {}, {1.0, 2.0});
+  timeline.end(200.0);
+  EXPECT_EQ(timeline.synchroniser.joints(), (Names{"joint0", "joint1"}));
+  EXPECT_EQ(timeline.listener.at(0, "q_joint1"), 2.0);
 }
 
 TEST(JointStatesTest, JointsOfOthersAreIgnoredAndReportedOnce) {
-  Session session(armOf({"elbow"}));
-  session.begin();
-  session.joint(0.0, {"finger", "elbow"}, {9.0, 1.0});
-  session.joint(10.0, {"finger", "elbow"}, {9.0, 2.0});
-  session.end(200.0);
-  EXPECT_EQ(session.listener.at(1, "q_elbow"), 2.0);
-  ASSERT_EQ(session.synchroniser.faults().size(), 1U);
-  EXPECT_EQ(session.synchroniser.faults()[0].what,
+  Timeline timeline(armOf({"elbow"}));
+  timeline.begin();
+  timeline.joint(0.0, {"finger", "elbow"}, {9.0, 1.0});
+  timeline.joint(10.0, {"finger", "elbow"}, {9.0, 2.0});
+  timeline.end(200.0);
+  EXPECT_EQ(timeline.listener.at(1, "q_elbow"), 2.0);
+  ASSERT_EQ(timeline.synchroniser.faults().size(), 1U);
+  EXPECT_EQ(timeline.synchroniser.faults()[0].what,
             "joint states also have finger, which are not recorded; name them in the joints to record them");
-  EXPECT_EQ(session.synchroniser.faults()[0].count, 2U);
+  EXPECT_EQ(timeline.synchroniser.faults()[0].count, 2U);
 }
 
 TEST(JointStatesTest, AMessageWithoutTheArmsJointsIsForeign) {
-  Session session(armOf({"elbow"}));
-  session.begin();
-  session.joint(0.0, {"finger"}, {9.0});
-  session.joint(1.0, {}, {});
-  session.end(200.0);
-  EXPECT_TRUE(session.listener.episodes.empty());
-  EXPECT_EQ(session.counter("foreign_joint_states"), 2U);
-  EXPECT_EQ(session.faultWith("none of"), "a joint state has none of the arm's joints elbow, but finger");
+  Timeline timeline(armOf({"elbow"}));
+  timeline.begin();
+  timeline.joint(0.0, {"finger"}, {9.0});
+  timeline.joint(1.0, {}, {});
+  timeline.end(200.0);
+  EXPECT_TRUE(timeline.listener.episodes.empty());
+  EXPECT_EQ(timeline.counter("foreign_joint_states"), 2U);
+  EXPECT_EQ(timeline.faultWith("none of"), "a joint state has none of the arm's joints elbow, but finger");
 }
 
 TEST(JointStatesTest, AMessageWithSomeOfTheJointsIsPartialAndSaysWhatItLacks) {
-  Session session(armOf({"a", "b", "c"}));
-  session.begin();
+  Timeline timeline(armOf({"a", "b", "c"}));
+  timeline.begin();
   JointStateSample sample = makeJointState(at(0.0), at(1.0), {"b"}, {1.0});
   sample.arrival.publisher = "/gripper";
-  session.synchroniser.push(sample);
-  session.end(200.0);
-  EXPECT_TRUE(session.listener.episodes.empty());
-  EXPECT_EQ(session.counter("partial_joint_states"), 1U);
-  EXPECT_EQ(session.faultWith("lack"),
+  timeline.synchroniser.push(sample);
+  timeline.end(200.0);
+  EXPECT_TRUE(timeline.listener.episodes.empty());
+  EXPECT_EQ(timeline.counter("partial_joint_states"), 1U);
+  EXPECT_EQ(timeline.faultWith("lack"),
             "joint states of /gripper lack a, c and make no rows; where several nodes publish the arm's joints, set "
             "merge_joint_states");
 }
 
 TEST(JointStatesTest, UnbelievableMessagesAreMalformed) {
-  Session session(armOf({"elbow"}));
-  session.begin();
-  session.joint(0.0, Names(1001, "elbow"), std::vector<double>(1001, 0.0));
-  session.joint(1.0, {"elbow", std::string(256, 'x')}, {0.0, 0.0});
-  session.joint(2.0, {"elbow", "elbow"}, {0.0, 0.0});
-  session.joint(-2e15, {"elbow"}, {0.0}, 3.0);
-  session.end(200.0);
-  EXPECT_TRUE(session.listener.episodes.empty());
-  EXPECT_EQ(session.counter("malformed_joint_states"), 4U);
-  EXPECT_EQ(session.faultWith("cannot be used"), "a joint state cannot be used: it has more than 1000 joints");
+  Timeline timeline(armOf({"elbow"}));
+  timeline.begin();
+  timeline.joint(0.0, Names(1001, "elbow"), std::vector<double>(1001, 0.0));
+  timeline.joint(1.0, {"elbow", std::string(256, 'x')}, {0.0, 0.0});
+  timeline.joint(2.0, {"elbow", "elbow"}, {0.0, 0.0});
+  timeline.joint(-2e15, {"elbow"}, {0.0}, 3.0);
+  timeline.end(200.0);
+  EXPECT_TRUE(timeline.listener.episodes.empty());
+  EXPECT_EQ(timeline.counter("malformed_joint_states"), 4U);
+  EXPECT_EQ(timeline.faultWith("cannot be used"), "a joint state cannot be used: it has more than 1000 joints");
 }
 
 TEST(JointStatesTest, MergedJointsAreInterpolatedAtTheRowWithTheirAge) {
   SynchroniserConfiguration configuration = armOf({"shoulder", "elbow", "wrist"});
   configuration.merge_joint_states = true;
-  Session session(configuration);
-  session.begin();
-  session.joint(0.0, {"wrist"}, {10.0});
-  session.joint(4.0, {"elbow", "shoulder"}, {2.0, 1.0});
-  session.joint(10.0, {"wrist"}, {20.0});
-  session.end(200.0);
-  ASSERT_EQ(session.listener.rows().size(), 1U) << "the message with the first listed joint makes the row";
-  EXPECT_EQ(session.listener.columnNames().back(), "wrist_age");
-  EXPECT_EQ(session.listener.at(0, "q_shoulder"), 1.0);
-  EXPECT_EQ(session.listener.at(0, "q_elbow"), 2.0);
-  EXPECT_DOUBLE_EQ(session.listener.at(0, "q_wrist"), 14.0);
-  EXPECT_TRUE(std::isnan(session.listener.at(0, "dq_wrist")));
-  EXPECT_EQ(session.listener.at(0, "wrist_age"), 0.004);
-  EXPECT_EQ(session.counter("partial_joint_states"), 0U);
+  Timeline timeline(configuration);
+  timeline.begin();
+  timeline.joint(0.0, {"wrist"}, {10.0});
+  timeline.joint(4.0, {"elbow", "shoulder"}, {2.0, 1.0});
+  timeline.joint(10.0, {"wrist"}, {20.0});
+  timeline.end(200.0);
+  ASSERT_EQ(timeline.listener.rows().size(), 1U) << "the message with the first listed joint makes the row";
+  EXPECT_EQ(timeline.listener.columnNames().back(), "wrist_age");
+  EXPECT_EQ(timeline.listener.at(0, "q_shoulder"), 1.0);
+  EXPECT_EQ(timeline.listener.at(0, "q_elbow"), 2.0);
+  EXPECT_DOUBLE_EQ(timeline.listener.at(0, "q_wrist"), 14.0);
+  EXPECT_TRUE(std::isnan(timeline.listener.at(0, "dq_wrist")));
+  EXPECT_EQ(timeline.listener.at(0, "wrist_age"), 0.004);
+  EXPECT_EQ(timeline.counter("partial_joint_states"), 0U);
 }
 
 TEST(JointStatesTest, AMergedJointWithoutALaterNeighbourIsMissingAndCounted) {
   SynchroniserConfiguration configuration = armOf({"shoulder", "wrist"});
   configuration.merge_joint_states = true;
-  Session session(configuration);
-  session.begin();
-  session.joint(0.0, {"wrist"}, {10.0});
-  session.joint(4.0, {"shoulder"}, {1.0});
-  session.end(200.0);
-  EXPECT_TRUE(std::isnan(session.listener.at(0, "q_wrist")));
-  EXPECT_EQ(session.listener.at(0, "wrist_age"), 0.004);
-  EXPECT_EQ(session.counter("unbridged_gaps"), 1U);
-  EXPECT_EQ(session.faultWith("joint wrist"),
+  Timeline timeline(configuration);
+  timeline.begin();
+  timeline.joint(0.0, {"wrist"}, {10.0});
+  timeline.joint(4.0, {"shoulder"}, {1.0});
+  timeline.end(200.0);
+  EXPECT_TRUE(std::isnan(timeline.listener.at(0, "q_wrist")));
+  EXPECT_EQ(timeline.listener.at(0, "wrist_age"), 0.004);
+  EXPECT_EQ(timeline.counter("unbridged_gaps"), 1U);
+  EXPECT_EQ(timeline.faultWith("joint wrist"),
             "joint wrist could not be interpolated: no later message came in time, or more than max_gap (0.500000 s) "
             "after the earlier one");
 }
@@ -145,36 +145,36 @@ TEST(JointStatesTest, AMergedJointWithoutALaterNeighbourIsMissingAndCounted) {
 TEST(JointStatesTest, WhenMergingARowNeedsTheJointsThatTheFirstRowHad) {
   SynchroniserConfiguration configuration = armOf({"shoulder", "elbow"});
   configuration.merge_joint_states = true;
-  Session session(configuration);
-  session.begin();
-  session.joint(0.0, {"shoulder", "elbow"}, {1.0, 2.0});
-  session.joint(10.0, {"shoulder"}, {1.0});
-  session.end(200.0);
-  EXPECT_EQ(session.listener.rows().size(), 1U);
-  EXPECT_EQ(session.counter("partial_joint_states"), 1U);
-  EXPECT_EQ(session.faultWith("lack"),
+  Timeline timeline(configuration);
+  timeline.begin();
+  timeline.joint(0.0, {"shoulder", "elbow"}, {1.0, 2.0});
+  timeline.joint(10.0, {"shoulder"}, {1.0});
+  timeline.end(200.0);
+  EXPECT_EQ(timeline.listener.rows().size(), 1U);
+  EXPECT_EQ(timeline.counter("partial_joint_states"), 1U);
+  EXPECT_EQ(timeline.faultWith("lack"),
             "joint states lack elbow that they had when the episode began, and make no rows; keep the messages' joints "
             "the same");
 }
 
 TEST(JointStatesTest, ChangesOfNamesFrameAndPublisherAreReported) {
-  Session session(armOf({"elbow"}));
-  session.begin();
+  Timeline timeline(armOf({"elbow"}));
+  timeline.begin();
   JointStateSample sample = makeJointState(at(0.0), at(1.0), {"elbow"}, {1.0});
   sample.arrival.publisher = "/arm";
   sample.arrival.frame_id = "base";
-  session.synchroniser.push(sample);
+  timeline.synchroniser.push(sample);
   sample = makeJointState(at(10.0), at(11.0), {"elbow", "finger"}, {1.0, 2.0});
   sample.arrival.publisher = "/impostor";
   sample.arrival.frame_id = "world";
-  session.synchroniser.push(sample);
-  session.end(200.0);
-  EXPECT_EQ(session.listener.rows().size(), 2U) << "the episode goes on";
+  timeline.synchroniser.push(sample);
+  timeline.end(200.0);
+  EXPECT_EQ(timeline.listener.rows().size(), 2U) << "the episode goes on";
   EXPECT_EQ(
-      session.faultWith("published by"),
+      timeline.faultWith("published by"),
       "joint elbow is published by /arm and by /impostor: the rows mix both; stop one of them or remap its topic");
-  EXPECT_EQ(session.faultWith("frame_id"), "joint states of /impostor changed their frame_id from 'base' to 'world'");
-  EXPECT_EQ(session.faultWith("changed their joints"),
+  EXPECT_EQ(timeline.faultWith("frame_id"), "joint states of /impostor changed their frame_id from 'base' to 'world'");
+  EXPECT_EQ(timeline.faultWith("changed their joints"),
             "joint states of /impostor changed their joints from elbow to elbow, finger");
 }
 
@@ -182,11 +182,11 @@ TEST(JointStatesTest, ColumnsSayWhatTheyAre) {
   SynchroniserConfiguration configuration = armOf({"left/elbow", "left.elbow"});
   configuration.prismatic_joints = {"left.elbow"};
   configuration.streams.push_back(makeStream("teleop_cmd", StreamType::twist));
-  Session session(configuration);
-  session.begin();
-  session.joint(0.0, {"left/elbow", "left.elbow"}, {1.0, 2.0});
-  session.end(200.0);
-  const std::vector<Column>& columns = session.listener.episodes.at(0).columns;
+  Timeline timeline(configuration);
+  timeline.begin();
+  timeline.joint(0.0, {"left/elbow", "left.elbow"}, {1.0, 2.0});
+  timeline.end(200.0);
+  const std::vector<Column>& columns = timeline.listener.episodes.at(0).columns;
   ASSERT_EQ(columns.size(), 7U + 7U);
   EXPECT_EQ(columns[0].name, "q_left_elbow");
   EXPECT_EQ(columns[0].unit, "rad");
@@ -207,8 +207,8 @@ TEST(JointStatesTest, ColumnsSayWhatTheyAre) {
   EXPECT_EQ(columns[12].name, "u_wz");
   EXPECT_EQ(columns[13].name, "u_age");
   EXPECT_EQ(columns[13].interpolation, Interpolation::none);
-  EXPECT_EQ(session.synchroniser.originalNames().at("q_left_elbow"), "q_left/elbow");
-  EXPECT_EQ(session.synchroniser.originalNames().at("q_left_elbow_2"), "q_left.elbow");
+  EXPECT_EQ(timeline.synchroniser.originalNames().at("q_left_elbow"), "q_left/elbow");
+  EXPECT_EQ(timeline.synchroniser.originalNames().at("q_left_elbow_2"), "q_left.elbow");
 }
 
 }  // namespace

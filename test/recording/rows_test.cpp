@@ -2,14 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "session.h"
+#include "timeline.h"
 
 namespace demo_logger::testing_support {
 namespace {
 
-std::vector<double> positionsOf(const Session& session) {
+std::vector<double> positionsOf(const Timeline& timeline) {
   std::vector<double> positions;
-  for (const Row& row : session.listener.rows()) positions.push_back(row.values[0]);
+  for (const Row& row : timeline.listener.rows()) positions.push_back(row.values[0]);
   return positions;
 }
 
@@ -18,136 +18,136 @@ using Positions = std::vector<double>;
 TEST(RowsTest, ARowIsReleasedWhenItsWaitIsOver) {
   SynchroniserConfiguration configuration;
   configuration.max_wait = 0.1;
-  Session session(configuration);
-  session.begin();
-  session.elbow(0.0, 1.0, /*receipt_ms=*/5.0);
-  session.advance(104.0);
-  EXPECT_TRUE(session.listener.rows().empty());
-  session.advance(105.0);
-  EXPECT_EQ(positionsOf(session), Positions({1.0}));
-  EXPECT_EQ(session.listener.rows()[0].stamp, at(0.0));
-  EXPECT_EQ(session.listener.rows()[0].receipt, at(5.0));
+  Timeline timeline(configuration);
+  timeline.begin();
+  timeline.elbow(0.0, 1.0, /*receipt_ms=*/5.0);
+  timeline.advance(104.0);
+  EXPECT_TRUE(timeline.listener.rows().empty());
+  timeline.advance(105.0);
+  EXPECT_EQ(positionsOf(timeline), Positions({1.0}));
+  EXPECT_EQ(timeline.listener.rows()[0].stamp, at(0.0));
+  EXPECT_EQ(timeline.listener.rows()[0].receipt, at(5.0));
 }
 
 TEST(RowsTest, JointStatesReorderedWithinTheWaitArePutIntoOrder) {
-  Session session(SynchroniserConfiguration{});
-  session.begin();
-  session.elbow(0.0, 0.0, 1.0);
-  session.elbow(20.0, 2.0, 21.0);
-  session.elbow(10.0, 1.0, 31.0);
-  session.elbow(30.0, 3.0, 32.0);
-  session.end(500.0);
-  EXPECT_EQ(positionsOf(session), Positions({0.0, 1.0, 2.0, 3.0}));
-  EXPECT_EQ(session.counter("late_rows"), 0U);
+  Timeline timeline(SynchroniserConfiguration{});
+  timeline.begin();
+  timeline.elbow(0.0, 0.0, 1.0);
+  timeline.elbow(20.0, 2.0, 21.0);
+  timeline.elbow(10.0, 1.0, 31.0);
+  timeline.elbow(30.0, 3.0, 32.0);
+  timeline.end(500.0);
+  EXPECT_EQ(positionsOf(timeline), Positions({0.0, 1.0, 2.0, 3.0}));
+  EXPECT_EQ(timeline.counter("late_rows"), 0U);
 }
 
 TEST(RowsTest, JointStatesBehindAReleasedRowAreLate) {
-  Session session(SynchroniserConfiguration{});
-  session.begin();
-  session.elbow(20.0, 2.0, 21.0);
-  session.elbow(10.0, 1.0, 122.0);
-  session.end(500.0);
-  EXPECT_EQ(positionsOf(session), Positions({2.0}));
-  EXPECT_EQ(session.counter("late_rows"), 1U);
+  Timeline timeline(SynchroniserConfiguration{});
+  timeline.begin();
+  timeline.elbow(20.0, 2.0, 21.0);
+  timeline.elbow(10.0, 1.0, 122.0);
+  timeline.end(500.0);
+  EXPECT_EQ(positionsOf(timeline), Positions({2.0}));
+  EXPECT_EQ(timeline.counter("late_rows"), 1U);
   EXPECT_EQ(
-      session.faultWith("dropped"),
+      timeline.faultWith("dropped"),
       "a joint state came when later ones had become rows, 0.010 s behind them; it was dropped. A longer max_wait "
       "leaves more time to put them into order");
 }
 
 TEST(RowsTest, OfEqualStampsTheFirstIsKept) {
-  Session session(SynchroniserConfiguration{});
-  session.begin();
-  session.elbow(0.0, 1.0, 1.0);
-  session.elbow(0.0, 2.0, 2.0);
-  session.elbow(0.0, 3.0, 300.0);
-  session.end(500.0);
-  EXPECT_EQ(positionsOf(session), Positions({1.0}));
-  EXPECT_EQ(session.counter("duplicate_rows"), 2U);
-  EXPECT_EQ(session.counter("late_rows"), 0U);
+  Timeline timeline(SynchroniserConfiguration{});
+  timeline.begin();
+  timeline.elbow(0.0, 1.0, 1.0);
+  timeline.elbow(0.0, 2.0, 2.0);
+  timeline.elbow(0.0, 3.0, 300.0);
+  timeline.end(500.0);
+  EXPECT_EQ(positionsOf(timeline), Positions({1.0}));
+  EXPECT_EQ(timeline.counter("duplicate_rows"), 2U);
+  EXPECT_EQ(timeline.counter("late_rows"), 0U);
 }
 
 TEST(RowsTest, ARowThatWaitsForAnEarlierOneKeepsItsOwnDeadline) {
   SynchroniserConfiguration configuration = numberStreams({Alignment::hold});
   configuration.max_wait = 0.1;
-  Session session(configuration);
-  session.begin();
-  session.number(0, 0.0, 1.0, 1.0);
-  session.elbow(20.0, 2.0, /*receipt_ms=*/20.0);
-  session.elbow(10.0, 1.0, /*receipt_ms=*/100.0);  // must be released first, at 200
-  session.number(0, 15.0, 9.0, /*receipt_ms=*/150.0);
-  session.end(500.0);
-  EXPECT_EQ(positionsOf(session), Positions({1.0, 2.0}));
-  EXPECT_EQ(session.listener.at(1, "s0_value"), 1.0) << "the message came after 120 ms";
-  EXPECT_EQ(session.synchroniser.streams()[0].late, 1U);
+  Timeline timeline(configuration);
+  timeline.begin();
+  timeline.number(0, 0.0, 1.0, 1.0);
+  timeline.elbow(20.0, 2.0, /*receipt_ms=*/20.0);
+  timeline.elbow(10.0, 1.0, /*receipt_ms=*/100.0);  // must be released first, at 200
+  timeline.number(0, 15.0, 9.0, /*receipt_ms=*/150.0);
+  timeline.end(500.0);
+  EXPECT_EQ(positionsOf(timeline), Positions({1.0, 2.0}));
+  EXPECT_EQ(timeline.listener.at(1, "s0_value"), 1.0) << "the message came after 120 ms";
+  EXPECT_EQ(timeline.synchroniser.streams()[0].late, 1U);
 }
 
 TEST(RowsTest, StreamsThatPromiseOrderReleaseRowsEarly) {
   SynchroniserConfiguration configuration = numberStreams({Alignment::hold, Alignment::linear});
   for (StreamConfiguration& stream : configuration.streams) stream.in_order = true;
-  Session session(configuration);
-  session.begin();
-  session.elbow(10.0, 1.0);
-  session.number(0, 9.0, 1.0);
-  session.number(1, 10.0, 1.0, 11.5);
-  session.advance(12.0);
-  EXPECT_TRUE(session.listener.rows().empty()) << "the held stream may still send a message of 10 ms";
-  session.number(0, 10.000001, 2.0, 13.0);
-  session.advance(13.0);
-  EXPECT_EQ(positionsOf(session), Positions({1.0}));
-  EXPECT_EQ(session.listener.at(0, "s0_value"), 1.0);
-  EXPECT_EQ(session.listener.at(0, "s1_value"), 1.0);
+  Timeline timeline(configuration);
+  timeline.begin();
+  timeline.elbow(10.0, 1.0);
+  timeline.number(0, 9.0, 1.0);
+  timeline.number(1, 10.0, 1.0, 11.5);
+  timeline.advance(12.0);
+  EXPECT_TRUE(timeline.listener.rows().empty()) << "the held stream may still send a message of 10 ms";
+  timeline.number(0, 10.000001, 2.0, 13.0);
+  timeline.advance(13.0);
+  EXPECT_EQ(positionsOf(timeline), Positions({1.0}));
+  EXPECT_EQ(timeline.listener.at(0, "s0_value"), 1.0);
+  EXPECT_EQ(timeline.listener.at(0, "s1_value"), 1.0);
 }
 
 TEST(RowsTest, WithoutStreamsRowsStillWaitForReorderedJointStates) {
-  Session session(SynchroniserConfiguration{});
-  session.begin();
-  session.elbow(10.0, 1.0);
-  session.advance(50.0);
-  EXPECT_TRUE(session.listener.rows().empty());
+  Timeline timeline(SynchroniserConfiguration{});
+  timeline.begin();
+  timeline.elbow(10.0, 1.0);
+  timeline.advance(50.0);
+  EXPECT_TRUE(timeline.listener.rows().empty());
 }
 
 TEST(RowsTest, AMessageThatBreaksThePromiseOfOrderIsDroppedAndReported) {
   SynchroniserConfiguration configuration = numberStreams({Alignment::hold});
   configuration.streams[0].in_order = true;
-  Session session(configuration);
-  session.begin();
-  session.number(0, 10.0, 1.0, 11.0);
-  session.number(0, 5.0, 2.0, 12.0);
-  session.elbow(7.0, 0.0, 13.0);
-  session.end(500.0);
-  EXPECT_TRUE(session.listener.rows()[0].values[4] != session.listener.rows()[0].values[4]);
-  EXPECT_EQ(session.synchroniser.streams()[0].dropped, 1U);
-  EXPECT_EQ(session.faultWith("in_order"),
+  Timeline timeline(configuration);
+  timeline.begin();
+  timeline.number(0, 10.0, 1.0, 11.0);
+  timeline.number(0, 5.0, 2.0, 12.0);
+  timeline.elbow(7.0, 0.0, 13.0);
+  timeline.end(500.0);
+  EXPECT_TRUE(timeline.listener.rows()[0].values[4] != timeline.listener.rows()[0].values[4]);
+  EXPECT_EQ(timeline.synchroniser.streams()[0].dropped, 1U);
+  EXPECT_EQ(timeline.faultWith("in_order"),
             "stream s0 (/s0) is declared in_order, but a message came 0.005000 s behind the one before it; it was "
             "dropped. Without in_order it would be put into order");
 }
 
 TEST(RowsTest, AGapInTheJointStatesIsReported) {
-  Session session(SynchroniserConfiguration{});
-  session.begin();
-  session.elbow(0.0, 0.0);
-  session.elbow(500.0, 0.0);
-  session.elbow(1234.0, 0.0);
-  session.end(2000.0);
-  EXPECT_EQ(session.faultWith("gap"),
+  Timeline timeline(SynchroniserConfiguration{});
+  timeline.begin();
+  timeline.elbow(0.0, 0.0);
+  timeline.elbow(500.0, 0.0);
+  timeline.elbow(1234.0, 0.0);
+  timeline.end(2000.0);
+  EXPECT_EQ(timeline.faultWith("gap"),
             "a gap of 0.734 s in the joint states; were messages lost, or did the robot pause?");
-  EXPECT_EQ(session.listener.rows().size(), 3U) << "and nothing is filled in";
+  EXPECT_EQ(timeline.listener.rows().size(), 3U) << "and nothing is filled in";
 }
 
 TEST(RowsTest, AMessagePushedBehindTheWatermarkCountsAsReceivedJustAfterIt) {
   SynchroniserConfiguration configuration = numberStreams({Alignment::hold});
-  Session session(configuration);
-  session.begin();
-  session.elbow(0.0, 0.0, /*receipt_ms=*/0.0);
-  session.elbow(1.0, 1.0, /*receipt_ms=*/1.0);
-  session.advance(100.0);  // the first row is final
-  session.number(0, -5.0, 3.0, /*receipt_ms=*/100.0);
-  session.end(500.0);
-  EXPECT_TRUE(session.listener.at(0, "s0_value") != 3.0);
-  EXPECT_EQ(session.listener.at(1, "s0_value"), 3.0);
-  EXPECT_EQ(session.counter("pushed_late"), 1U);
-  EXPECT_EQ(session.faultWith("dealt with"),
+  Timeline timeline(configuration);
+  timeline.begin();
+  timeline.elbow(0.0, 0.0, /*receipt_ms=*/0.0);
+  timeline.elbow(1.0, 1.0, /*receipt_ms=*/1.0);
+  timeline.advance(100.0);  // the first row is final
+  timeline.number(0, -5.0, 3.0, /*receipt_ms=*/100.0);
+  timeline.end(500.0);
+  EXPECT_TRUE(timeline.listener.at(0, "s0_value") != 3.0);
+  EXPECT_EQ(timeline.listener.at(1, "s0_value"), 3.0);
+  EXPECT_EQ(timeline.counter("pushed_late"), 1U);
+  EXPECT_EQ(timeline.faultWith("dealt with"),
             "a message reached the recorder when its time of receipt had been dealt with; it counts as received then. "
             "Is the machine overloaded?");
 }
@@ -155,21 +155,21 @@ TEST(RowsTest, AMessagePushedBehindTheWatermarkCountsAsReceivedJustAfterIt) {
 TEST(RowsTest, TheMetadataOfAStreamTellsWhatBecameOfItsMessages) {
   SynchroniserConfiguration configuration = numberStreams({Alignment::hold});
   configuration.streams[0].latency = 0.001;
-  Session session(configuration);
-  session.begin(0.0);
+  Timeline timeline(configuration);
+  timeline.begin(0.0);
   for (const double ms : {10.0, 20.0, 21.0, 50.0}) {
     StreamSample sample = makeNumber(at(ms), at(ms + ms / 10.0), ms);
     sample.arrival.publisher = "/device";
     sample.arrival.frame_id = "tool";
-    session.synchroniser.push(0, sample);
+    timeline.synchroniser.push(0, sample);
   }
-  session.elbow(15.0, 0.0);
-  session.elbow(25.0, 0.0);
-  session.number(0, 12.0, 12.0, /*receipt_ms=*/300.0);  // would have changed the row at 15 ms
-  session.number(0, 20.5, 20.5, /*receipt_ms=*/300.0);  // is hidden from the row at 25 ms by the message of 21 ms
-  session.synchroniser.push(0, makeTwist(at(40.0), at(41.0), 0.0));
-  session.end(500.0);
-  const StreamMetadata stream = session.synchroniser.streams().at(0);
+  timeline.elbow(15.0, 0.0);
+  timeline.elbow(25.0, 0.0);
+  timeline.number(0, 12.0, 12.0, /*receipt_ms=*/300.0);  // would have changed the row at 15 ms
+  timeline.number(0, 20.5, 20.5, /*receipt_ms=*/300.0);  // is hidden from the row at 25 ms by the message of 21 ms
+  timeline.synchroniser.push(0, makeTwist(at(40.0), at(41.0), 0.0));
+  timeline.end(500.0);
+  const StreamMetadata stream = timeline.synchroniser.streams().at(0);
   EXPECT_EQ(stream.name, "s0");
   EXPECT_EQ(stream.topic, "/s0");
   EXPECT_EQ(stream.type, "number");
@@ -185,10 +185,10 @@ TEST(RowsTest, TheMetadataOfAStreamTellsWhatBecameOfItsMessages) {
   EXPECT_EQ(stream.receipt_delay.min, 0.001);
   EXPECT_NEAR(stream.receipt_delay.median, 0.00355, 1e-12) << "between 2.1 ms and 5 ms";
   EXPECT_EQ(stream.receipt_delay.max, 0.288);
-  EXPECT_EQ(session.counter("malformed_stream_messages"), 1U);
-  EXPECT_EQ(session.faultWith("twist"),
+  EXPECT_EQ(timeline.counter("malformed_stream_messages"), 1U);
+  EXPECT_EQ(timeline.faultWith("twist"),
             "stream s0 (/s0) sent a twist with 6 values, expected a number; it was dropped");
-  EXPECT_EQ(session.faultWith("frame_id"), "stream s0 (/s0) changed its frame_id from 'tool' to ''");
+  EXPECT_EQ(timeline.faultWith("frame_id"), "stream s0 (/s0) changed its frame_id from 'tool' to ''");
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ constexpr Nanoseconds kToday = 1'760'000'000 * kNanosecondsPerSecond;
 /// An instant `ms` milliseconds after kToday.
 constexpr Nanoseconds at(double ms) { return kToday + static_cast<Nanoseconds>(ms * 1e6); }
 
-class Session {
+class Timeline {
  public:
-  explicit Session(SynchroniserConfiguration configuration) : synchroniser(std::move(configuration)) {}
+  explicit Timeline(SynchroniserConfiguration configuration) : synchroniser(std::move(configuration)) {}
 
   /// A joint state of joint `elbow`, received 1 ms after its stamp unless told.
   void elbow(double stamp_ms, double position, std::optional<double> receipt_ms = std::nullopt) {
