@@ -61,6 +61,16 @@ void checkCounters(const Metadata& metadata, Findings& findings) {
   }
 }
 
+/// Faults carry the recorder's time, rows that of the joint states. Where the two clocks differ, no instant is better
+/// than a wrong one.
+std::string instantOf(const Fault& fault, const Metadata& metadata) {
+  constexpr double kMargin = 2.0;  // [s] a fault may be noted before the first row and after the last
+  const double instant = toSeconds(fault.stamp - metadata.start_stamp);
+  const bool during =
+      fault.stamp != 0 && metadata.start_stamp != 0 && instant > -kMargin && instant < metadata.duration + kMargin;
+  return during ? formatInstant(instant) : "during the recording";
+}
+
 void checkStream(const StreamMetadata& stream, Findings& findings) {
   const std::string title = "stream " + stream.name + (stream.topic.empty() ? "" : " (" + stream.topic + ")") + ": ";
   const std::string of = " of " + std::to_string(stream.received) + " messages ";
@@ -90,10 +100,7 @@ void checkMetadata(const Metadata& metadata, Findings& findings) {
   for (const Fault& fault : metadata.faults) {
     const bool ends = !fault.what.empty() && (fault.what.back() == '.' || fault.what.back() == '?');
     findings.add("fault", fault.severity,
-                 "the recorder noted " +
-                     (fault.stamp != 0 && metadata.start_stamp != 0
-                          ? formatInstant(toSeconds(fault.stamp - metadata.start_stamp))
-                          : std::string("during the recording")) +
+                 "the recorder noted " + instantOf(fault, metadata) +
                      (fault.count > 1 ? " and " + std::to_string(fault.count - 1) + " times more" : "") + ": " +
                      fault.what + (ends ? "" : "."));
   }

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
     tool.set_version_flag("--version", kSoftware);
     tool.require_subcommand(1);
     tool.footer(
-        "Example: demo_tool import session.bag -o demos && demo_tool info demos\n"
+        "Example: demo_tool import teleoperation.bag -o demos && demo_tool info demos\n"
         "Exit code: 0 done; 1 done, with findings; 2 not done, nothing written.");
     addImportVerb(tool, exit_code);
     addInfoVerb(tool, exit_code);

@@ -109,9 +109,11 @@ std::string toText(const RecordingSummary& summary) {
   text << summary.file.string() << '\n'
        << "  " << figures.rows << " rows in " << number(figures.duration, 3) << " s: " << number(figures.mean_rate, 1)
        << " Hz, largest gap " << milliseconds(figures.largest_gap) << " at " << number(figures.largest_gap_at, 3)
-       << " s\n"
-       << "  channel " << metadata.channel << (metadata.task.empty() ? "" : ", task " + metadata.task) << ", outcome "
-       << metadata.outcome << ", " << metadata.status << '\n';
+       << " s\n";
+  if (summary.has_sidecar) {
+    text << "  channel " << metadata.channel << (metadata.task.empty() ? "" : ", task " + metadata.task) << ", outcome "
+         << metadata.outcome << ", " << metadata.status << '\n';
+  }
   for (const auto& [column, age] : figures.ages) {
     text << "  " << column << ": median " << milliseconds(age.median) << ", largest " << milliseconds(age.max) << '\n';
   }

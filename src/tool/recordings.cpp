@@ -1,8 +1,10 @@
 #include "src/tool/recordings.h"
 
 #include <algorithm>
+#include <iostream>
 
 #include "demo_logger/trajectory/error.h"
+#include "src/tool/verbs.h"
 
 namespace demo_logger {
 namespace {
@@ -36,6 +38,27 @@ std::vector<std::filesystem::path> findRecordings(const std::vector<std::string>
     }
   }
   return files;
+}
+
+int lookAtRecordings(const std::vector<std::string>& paths, bool json,
+                     const std::function<Looked(const std::filesystem::path&)>& look) {
+  int exit_code = kDone;
+  nlohmann::ordered_json recordings = nlohmann::ordered_json::array();
+  for (const std::filesystem::path& file : findRecordings(paths)) {
+    try {
+      Looked looked = look(file);
+      exit_code = std::max(exit_code, looked.exit_code);
+      recordings.push_back(std::move(looked.json));
+    } catch (const Error& error) {
+      exit_code = kNotDone;
+      std::cerr << error.what() << '\n';
+      recordings.push_back({{"file", file.string()}, {"error", error.what()}});
+    }
+  }
+  if (json) {
+    std::cout << nlohmann::ordered_json{{"recordings", recordings}}.dump(2) << '\n';
+  }
+  return exit_code;
 }
 
 }  // namespace demo_logger

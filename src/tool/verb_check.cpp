@@ -21,16 +21,19 @@ struct Options {
 
 const char* nameOf(Severity severity) { return severity == Severity::error ? "error" : "warning"; }
 
-ordered_json toJson(const std::string& file, const CheckResult& result) {
+ordered_json toJson(const std::string& file, const CheckResult& result, const std::vector<std::string>& notes) {
   ordered_json findings = ordered_json::array();
   for (const Finding& finding : result.findings) {
     findings.push_back(
         {{"kind", finding.kind}, {"severity", nameOf(finding.severity)}, {"sentence", finding.sentence}});
   }
-  return {{"file", file}, {"findings", findings}};
+  return {{"file", file}, {"findings", findings}, {"notes", notes}};
 }
 
-void print(const std::string& file, const CheckResult& result) {
+void print(const std::string& file, const CheckResult& result, const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) {
+    std::cout << file << ": note: " << note << '\n';
+  }
   for (const Finding& finding : result.findings) {
     std::cout << file << ": " << nameOf(finding.severity) << ": " << finding.sentence << '\n';
   }
@@ -40,21 +43,14 @@ void print(const std::string& file, const CheckResult& result) {
 }
 
 int checkAll(const Options& options) {
-  int exit_code = kDone;
-  ordered_json recordings = ordered_json::array();
-  for (const std::filesystem::path& file : findRecordings(options.paths)) {
-    const CheckResult result = check(readDemonstration(file).demonstration);
-    exit_code = result.findings.empty() ? exit_code : kFindings;
-    if (options.json) {
-      recordings.push_back(toJson(file.string(), result));
-    } else {
-      print(file.string(), result);
+  return lookAtRecordings(options.paths, options.json, [&](const std::filesystem::path& file) -> Looked {
+    const LoadedDemonstration loaded = readDemonstration(file);
+    const CheckResult result = check(loaded.demonstration);
+    if (!options.json) {
+      print(file.string(), result, loaded.notes);
     }
-  }
-  if (options.json) {
-    std::cout << ordered_json{{"recordings", recordings}}.dump(2) << '\n';
-  }
-  return exit_code;
+    return {result.findings.empty() ? kDone : kFindings, toJson(file.string(), result, loaded.notes)};
+  });
 }
 
 }  // namespace

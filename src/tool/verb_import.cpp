@@ -142,7 +142,7 @@ void addImportVerb(CLI::App& tool, int& exit_code) {
   verb->add_option("--base", options->base, "link in whose frame the tool pose is given (default: the root)");
   verb->add_option("--tip", options->tip, "link of the tool (default: the only leaf)");
   verb->add_flag("--json", options->json, "print one JSON object instead");
-  verb->footer("Example: demo_tool import session.bag -o demos --stream wrench=/ft_sensor:linear:0.004");
+  verb->footer("Example: demo_tool import teleoperation.bag -o demos --stream wrench=/ft_sensor:linear:0.004");
   verb->callback([options, &exit_code] {
     import(*options);
     exit_code = kDone;

@@ -16,19 +16,14 @@ struct Options {
   bool json = false;
 };
 
-void inform(const Options& options) {
-  nlohmann::ordered_json recordings = nlohmann::ordered_json::array();
-  for (const std::filesystem::path& file : findRecordings(options.paths)) {
+int inform(const Options& options) {
+  return lookAtRecordings(options.paths, options.json, [&](const std::filesystem::path& file) -> Looked {
     const RecordingSummary summary = summarise(file, readDemonstration(file));
-    if (options.json) {
-      recordings.push_back(toJson(summary));
-    } else {
+    if (!options.json) {
       std::cout << toText(summary);
     }
-  }
-  if (options.json) {
-    std::cout << nlohmann::ordered_json{{"recordings", recordings}}.dump(2) << '\n';
-  }
+    return {kDone, toJson(summary)};
+  });
 }
 
 }  // namespace
@@ -39,10 +34,7 @@ void addInfoVerb(CLI::App& tool, int& exit_code) {
   verb->add_option("PATH", options->paths, "recordings (*.csv), or directories of them")->required();
   verb->add_flag("--json", options->json, "print one JSON object instead");
   verb->footer("Example: demo_tool info demos/demo_000001.csv");
-  verb->callback([options, &exit_code] {
-    inform(*options);
-    exit_code = kDone;
-  });
+  verb->callback([options, &exit_code] { exit_code = inform(*options); });
 }
 
 }  // namespace demo_logger

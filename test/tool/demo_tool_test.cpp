@@ -4,6 +4,7 @@
 #include <std_msgs/String.h>
 #include <sys/wait.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -94,6 +95,31 @@ TEST_F(DemoToolTest, ImportThenInfoTellsRowsRateAndFiles) {
   EXPECT_NE(info.out.find("100 rows in 0.990 s: 100.0 Hz, largest gap 10.0 ms"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("columns: time q_elbow dq_elbow tau_elbow receipt_delay"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("demo_000001.json"), std::string::npos) << info.out;
+}
+
+TEST_F(DemoToolTest, OneUnreadableRecordingDoesNotKeepTheOthersFromTheirTurn) {
+  ASSERT_EQ(run("import " + path("motion.bag") + " -o " + path("demos")).exit_code, 0);
+  std::ofstream(path("demos/broken.csv")) << "time,q_elbow\n0,1\n0.1\n";
+  for (const std::string verb : {"info", "check"}) {
+    const Outcome outcome = run(verb + " " + path("demos"));
+    EXPECT_EQ(outcome.exit_code, 2) << verb;
+    EXPECT_NE(outcome.out.find("demo_000001.csv"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.err.find("broken.csv:3: "), std::string::npos) << outcome.err;
+    const auto recordings = nlohmann::json::parse(run(verb + " --json " + path("demos")).out)["recordings"];
+    ASSERT_EQ(recordings.size(), 2U);
+    EXPECT_NE(recordings[0]["error"].get<std::string>().find("broken.csv:3: "), std::string::npos);
+    EXPECT_EQ(recordings[1].count("error"), 0U);
+  }
+}
+
+TEST_F(DemoToolTest, WhatFollowsFromTheColumnNamesAloneIsSaidToBeSo) {
+  ASSERT_EQ(run("import " + path("motion.bag") + " -o " + path("demos")).exit_code, 0);
+  std::filesystem::remove(path("demos/demo_000001.json"));
+  const Outcome checked = run("check " + path("demos"));
+  EXPECT_NE(checked.out.find("demo_000001.csv: note: "), std::string::npos) << checked.out;
+  const Outcome info = run("info " + path("demos"));
+  EXPECT_NE(info.out.find("note: "), std::string::npos) << info.out;
+  EXPECT_EQ(info.out.find("complete"), std::string::npos) << "nobody knows whether it is: " << info.out;
 }
 
 TEST_F(DemoToolTest, JsonIsOneObjectAndNothingElse) {

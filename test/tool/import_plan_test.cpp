@@ -16,7 +16,7 @@ namespace {
 
 class ImportPlanTest : public testing::Test {
  public:
-  ImportPlanTest() : path_(directory_ / "session.bag"), bag_(path_.string(), rosbag::bagmode::Write) {}
+  ImportPlanTest() : path_(directory_ / "teleoperation.bag"), bag_(path_.string(), rosbag::bagmode::Write) {}
 
   template <class Message>
   ImportPlanTest& with(const std::string& topic) {
