@@ -4,6 +4,7 @@
 
 #include <csignal>
 
+#include "demo_logger/trajectory/error.h"
 #include "src/nodes/demo_logger_node.h"
 #include "src/ros/node_main.h"
 
@@ -46,7 +47,10 @@ void recordUntilStopped() {
   while (ros::ok() && stop_requested == 0 && !master.lost()) {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.05));
   }
-  recorder.close();
+  const demo_logger::Reply reply = recorder.close();
+  if (!reply.success) {
+    throw demo_logger::FileError(reply.message);
+  }
 }
 
 }  // namespace

@@ -103,13 +103,15 @@ DemoLoggerNode::DemoLoggerNode(const ros::NodeHandle& node, const ros::NodeHandl
   everySecond();
 }
 
-void DemoLoggerNode::close() {
+Reply DemoLoggerNode::close() {
   readTeleopMap();
-  const Reply reply = recorder_.close();
-  if (!reply.success || !reply.id.empty()) {
+  sayFaults(recorder_.status());
+  Reply reply = recorder_.close();
+  if (reply.success && !reply.id.empty()) {
     log(reply);
   }
   publishStatusIfChanged();
+  return reply;
 }
 
 bool DemoLoggerNode::onStart(Start::Request& request, Start::Response& response) {
@@ -224,10 +226,35 @@ void DemoLoggerNode::publishStatus(const RecorderStatus& status) {
   const bool begun = status.state == RecorderState::recording &&
                      (!published_ || published_->state != Status::RECORDING || published_->id != status.id);
   if (begun) {
+    if (published_ && published_->state == Status::RECORDING) {
+      ROS_WARN_STREAM(published_->id << " was interrupted and saved: the joint states' clock jumped.");
+    }
     ROS_INFO_STREAM("Recording " << status.id << ".");
   }
+  sayFaults(status);
   published_ = toMessage(status);
   status_publisher_.publish(*published_);
+}
+
+void DemoLoggerNode::sayFaults(const RecorderStatus& status) {
+  if (status.id != episode_of_faults_) {
+    episode_of_faults_ = status.id;
+    said_faults_.clear();
+  }
+  for (const Fault& fault : status.faults) {
+    if (said_faults_.insert(fault.what).second) {
+      if (fault.severity == Severity::error) {
+        ROS_ERROR_STREAM(fault.what);
+      } else {
+        ROS_WARN_STREAM(fault.what);
+      }
+    }
+  }
+  const std::string problem = recorder_.problem();
+  if (!problem.empty() && problem != problem_) {
+    ROS_ERROR_STREAM(problem);
+  }
+  problem_ = problem;
 }
 
 void DemoLoggerNode::publishStatusIfChanged() {

@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,7 @@ class DemoLoggerNode {
                  const DemoLoggerParameters& parameters);
 
   /// Ends the open episode, if there is one, as complete. Works after ROS has shut down, too.
-  void close();
+  Reply close();
 
  private:
   bool onStart(Start::Request& request, Start::Response& response);
@@ -53,6 +54,8 @@ class DemoLoggerNode {
 
   void readTeleopMap();
   void publishStatus(const RecorderStatus& status);
+  /// Each fault of an episode is said once on the console.
+  void sayFaults(const RecorderStatus& status);
   void publishStatusIfChanged();
   void everySecond();
 
@@ -62,6 +65,9 @@ class DemoLoggerNode {
   LiveRecorder recorder_;
   RecordingDiagnostics diagnostics_;
   std::string teleop_map_problem_;
+  std::string problem_;            // why nothing can be recorded, as last said
+  std::string episode_of_faults_;  // the episode whose faults were said, and what was said
+  std::set<std::string> said_faults_;
   std::optional<Status> published_;
 
   ros::Publisher status_publisher_;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include "demo_logger/pipelines/recorded_robot.h"
 #include "src/ros/stream_converter.h"
@@ -68,6 +70,23 @@ EffortMetadata parseEffort(Parameters parameters) {
   return effort;
 }
 
+/// One press is one request.
+void requireDistinct(const Parameters& parameters, const Buttons& buttons) {
+  std::map<int, std::string> taken;
+  const std::pair<const char*, int> requests[] = {{"start", buttons.start},
+                                                  {"stop", buttons.stop},
+                                                  {"success", buttons.success},
+                                                  {"failure", buttons.failure},
+                                                  {"discard", buttons.discard}};
+  for (const auto& [request, button] : requests) {
+    if (button < 0) continue;
+    const auto [place, is_new] = taken.emplace(button, request);
+    if (is_new) continue;
+    throw ConfigurationError(parameters.fullName(request) + " is " + std::to_string(button) + ", which is " +
+                             place->second + " already; expected a button of its own for each request.");
+  }
+}
+
 Buttons parseButtons(Parameters parameters) {
   const Range range{-1, kMostButtons, ""};
   Buttons buttons;
@@ -77,6 +96,7 @@ Buttons parseButtons(Parameters parameters) {
   buttons.failure = parameters.integer("failure", buttons.failure, range);
   buttons.discard = parameters.integer("discard", buttons.discard, range);
   parameters.rejectUnknown();
+  requireDistinct(parameters, buttons);
   return buttons;
 }
 
@@ -162,7 +182,11 @@ DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std
   }
   result.buttons = parseButtons(parameters.group("buttons"));
   parameters.rejectUnknown();
-  validate(synchroniser);
+  try {
+    validate(synchroniser);
+  } catch (const ConfigurationError& error) {  // its sentence begins with the field, which is the parameter's name
+    throw ConfigurationError(parameters.fullName(error.what()));
+  }
   metadata.parameters = describeParameters(recorder);
   return result;
 }

@@ -29,7 +29,9 @@ std::filesystem::path publish(FileSystem& file_system, const std::filesystem::pa
     }
     if (result != 0) {
       throw FileError(data.string() + " cannot be renamed to " + finals.data.filename().string() + ": " +
-                      errorText(result) + ". Its rows are whole; `demo_tool recover` will finish it.");
+                      errorText(result) +
+                      (result == -ENOENT ? ". Was it moved or removed while it was recorded?"
+                                         : ". Its rows are whole; `demo_tool recover` will finish it."));
     }
     data = finals.data;
     sidecar.giveReserveBack();

@@ -106,6 +106,16 @@ TEST(DemoLoggerParametersTest, WhatIsWrongIsNamedInFullWithWhatWasExpected) {
             "/demo_logger/output_dir is empty, expected a directory.");
   EXPECT_EQ(refusal([](XmlRpcValue& values) { values["buttons"]["start"] = 1000; }),
             "/demo_logger/buttons/start is 1000, expected a whole number from -1 to 255.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) {
+              values["buttons"]["start"] = 1;
+              values["buttons"]["stop"] = 1;
+            }),
+            "/demo_logger/buttons/stop is 1, which is start already; expected a button of its own for each request.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) {
+              values["joints"][0] = "a";
+              values["joints"][1] = "a";
+            }),
+            "/demo_logger/joints names 'a' twice, expected each joint once");
   EXPECT_EQ(refusal([](XmlRpcValue& values) { values["effort"]["side"] = "left"; }),
             "/demo_logger/effort/side is \"left\", expected one of motor, link.");
   EXPECT_EQ(refusal([](XmlRpcValue& values) { values["streams"][0]["topic"] = "x"; }),
