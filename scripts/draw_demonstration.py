@@ -45,9 +45,11 @@ class Demonstration:
         return [name for name in names if name in self.values and np.isfinite(self.values[name]).any()]
 
     def joints(self, prefix):
-        listed = self.metadata.get("robot", {}).get("joints")
+        """The columns of all joints, by the names that the recorder had to make portable where it had to."""
+        column_of = {original: name for name, original in self.metadata.get("original_names", {}).items()}
+        listed = [prefix + joint for joint in self.metadata.get("robot", {}).get("joints") or []]
         if listed:
-            return self.group([prefix + joint for joint in listed])
+            return self.group([column_of.get(name, name) for name in listed])
         return self.group([name for name in self.names if name.startswith(prefix)])
 
     def title(self):

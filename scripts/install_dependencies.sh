@@ -26,8 +26,11 @@ build_packages=(
   ros-geometry-msgs ros-message-generation ros-message-runtime ros-sensor-msgs ros-std-msgs ros-std-srvs
 )
 
-# To launch the nodes and to draw what they recorded.
-run_packages=(python3-matplotlib python3-numpy python3-roslaunch ros-robot-state-publisher rosbash)
+# To launch the nodes, to call their services and look at their topics, and to draw what they recorded.
+run_packages=(
+  python3-geometry-msgs python3-matplotlib python3-numpy python3-roslaunch python3-rosservice python3-rostopic
+  python3-sensor-msgs python3-std-srvs ros-robot-state-publisher rosbash
+)
 
 # To run the tests: independent peers (kdl_parser, the JSON Schema), rosbag play, a locale with a decimal comma, and
 # the two checks of the source that are part of every test run.
