@@ -36,7 +36,7 @@ run_packages=(
 # the two checks of the source that are part of every test run.
 test_packages=(
   catkin-lint clang-format libgtest-dev libkdl-parser-dev librapidcheck-dev librostest-dev locales-all
-  python3-jsonschema python3-rosbag python3-rostest python3-rostopic python3-sensor-msgs
+  python3-jsonschema python3-rosbag python3-rostest
 )
 
 # Only for scripts/lint.sh.
