@@ -74,6 +74,34 @@ TEST_F(EndingTest, AKillLeavesPartsThatTheNextStartFinishes) {
       << process_->output();
 }
 
+TEST_F(EndingTest, AnEpisodeThatCannotBeSavedIsNotCalledASuccess) {
+  record();
+  std::filesystem::remove_all(output(""));
+  process_->signal(SIGINT);
+  EXPECT_EQ(process_->wait(), 1);
+  EXPECT_NE(process_->output().find("Was it moved or removed while it was recorded?"), std::string::npos)
+      << process_->output();
+}
+
+TEST_F(EndingTest, AFaultIsSaidOnceOnTheConsole) {
+  start();
+  for (int i = 0; i < 3; ++i) {
+    move(20);
+    sensor_msgs::JointState partial = makeJointState(ros::Time::now());
+    --moved_;
+    partial.name.pop_back();
+    partial.position.pop_back();
+    joint_states_.publish(partial);
+  }
+  ASSERT_TRUE(waitForRows(60));
+  process_->signal(SIGINT);
+  EXPECT_EQ(process_->wait(), 0);
+  const std::string said = process_->output();
+  EXPECT_NE(said.find("lack joint_2"), std::string::npos) << said;
+  EXPECT_NE(said.find("merge_joint_states"), std::string::npos) << said;
+  EXPECT_EQ(said.find("merge_joint_states", said.find("merge_joint_states") + 1), std::string::npos) << said;
+}
+
 TEST_F(EndingTest, AStopOfASecondInTheMiddleLosesNothing) {
   record();
   process_->signal(SIGSTOP);
