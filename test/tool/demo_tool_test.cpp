@@ -169,7 +169,9 @@ TEST_F(DemoToolTest, CheckEndsWithOneWhereItFindsSomethingAndWithZeroWhereNot) {
   std::ofstream(directory_ / "bad.csv") << "time,q_elbow,dq_elbow\n0,0,1\n0.01,0.01,1\n0.02,0.02,1\n2.02,2.02,1\n";
   const Outcome good = run("check " + path("good.csv"));
   EXPECT_EQ(good.exit_code, 0) << good.out;
-  EXPECT_EQ(good.out, path("good.csv") + ": nothing found wrong in 4 rows\n");
+  EXPECT_EQ(good.out, path("good.csv") + ": note: " + path("good.json") +
+                          ": is not there; units, roles and interpolation follow from the columns' names.\n" +
+                          path("good.csv") + ": nothing found wrong in 4 rows\n");
 
   const Outcome bad = run("check " + path("good.csv") + " " + path("bad.csv"));
   EXPECT_EQ(bad.exit_code, 1);
