@@ -116,7 +116,13 @@ ParsedUrdf parseUrdf(const std::string& xml) {
     if (!parsed.model) throw ModelError("not a valid URDF: " + (thrown.empty() ? console.summary() : thrown));
     parsed.unread_inertia = console.unreadInertia();
   }
-  refuseWhatIsNoTree(*parsed.model);
+  try {
+    refuseWhatIsNoTree(*parsed.model);
+  } catch (const ModelError&) {
+    // Links own their children: a loop of them would own itself for ever.
+    for (const auto& [name, link] : parsed.model->links_) link->child_links.clear();
+    throw;
+  }
   return parsed;
 }
 
