@@ -37,6 +37,7 @@ class EpisodeWriter::Implementation {
 
   ~Implementation() {
     if (syncing_.joinable()) {
+      stopThreads();
       metadata_.status = kNotFinished;
       try {
         finish(metadata_);
@@ -137,6 +138,9 @@ class EpisodeWriter::Implementation {
   }
 
   void stopThreads() {
+    if (!syncing_.joinable()) {
+      return;
+    }
     rows_.close();
     {
       const std::lock_guard<std::mutex> lock(mutex_);
