@@ -176,7 +176,7 @@ void DemoLoggerNode::onJoy(const sensor_msgs::Joy& joy) {
 
 Reply DemoLoggerNode::start(const Start::Request& request) {
   readTeleopMap();
-  const Reply reply = recorder_.start(request.channel, request.task, request.operator_name, request.notes);
+  Reply reply = recorder_.start(request.channel, request.task, request.operator_name, request.notes);
   log(reply);
   publishStatusIfChanged();
   return reply;
@@ -189,7 +189,7 @@ Reply DemoLoggerNode::stop(const std::string& outcome, const std::string& notes)
     saving.state = RecorderState::saving;
     publishStatus(saving);
   }
-  const Reply reply = recorder_.stop(outcome, notes);
+  Reply reply = recorder_.stop(outcome, notes);
   log(reply);
   publishStatusIfChanged();
   return reply;
@@ -199,7 +199,7 @@ Reply DemoLoggerNode::judge(const std::string& outcome) {
   if (recorder_.status().state != RecorderState::idle) {
     return stop(outcome, "");
   }
-  const Reply reply = recorder_.label("", outcome, "", "", "");
+  Reply reply = recorder_.label("", outcome, "", "", "");
   log(reply);
   return reply;
 }
