@@ -94,13 +94,14 @@ template <typename Convert>
 auto toList(const std::string& name, XmlRpcValue value, const std::string& expected, Convert convert) {
   if (value.getType() != XmlRpcValue::TypeArray) refuse(name, describe(value), expected);
   std::vector<decltype(convert(name, value))> list;
+  list.reserve(static_cast<std::size_t>(value.size()));
   for (int i = 0; i < value.size(); ++i) list.push_back(convert(element(name, i), value[i]));
   return list;
 }
 
 }  // namespace
 
-Parameters::Parameters(std::string name, XmlRpcValue values) : name_(std::move(name)), values_(std::move(values)) {
+Parameters::Parameters(std::string name, const XmlRpcValue& values) : name_(std::move(name)), values_(values) {
   const XmlRpcValue::Type type = values_.getType();
   if (type != XmlRpcValue::TypeStruct && type != XmlRpcValue::TypeInvalid) {
     refuse(name_, describe(values_), "a group of parameters");
@@ -145,7 +146,7 @@ std::string Parameters::text(const std::string& key, const std::string& fallback
 
 std::string Parameters::choice(const std::string& key, const std::string& fallback,
                                const std::vector<std::string>& choices) {
-  const std::string value = text(key, fallback);
+  std::string value = text(key, fallback);
   std::string listed;
   for (const std::string& choice : choices) {
     if (choice == value) return value;

@@ -27,7 +27,7 @@ struct Range {
 class Parameters {
  public:
   /// `name` is the full name of the namespace ("/recorder"), `values` a struct, or nothing at all.
-  Parameters(std::string name, XmlRpc::XmlRpcValue values);
+  Parameters(std::string name, const XmlRpc::XmlRpcValue& values);
 
   bool has(const std::string& key) const;
   std::string fullName(const std::string& key) const;
