@@ -24,6 +24,7 @@ enum class Counter {
   zero_stamps,
   non_finite_values,
   non_unit_quaternions,
+  gaps,
   unbridged_gaps,
   clock_outliers,
   overflow,

@@ -44,13 +44,13 @@ std::string formatted(const char* format, double value) {
 Sequencer::Sequencer(const SynchroniserConfiguration& configuration)
     : configuration_(configuration),
       wait_(rowWait(configuration)),
-      max_gap_(fromSeconds(configuration.max_gap)),
       wait_for_streams_(fromSeconds(configuration.wait_for_streams)),
       all_in_order_(!configuration.streams.empty()),
       joint_states_(configuration_, ledger_),
+      pacing_(fromSeconds(configuration.max_gap)),
       pruned_to_(kBeginningOfTime) {
   for (std::size_t i = 0; i < configuration.streams.size(); ++i) {
-    streams_.emplace_back(configuration.streams[i], i, max_gap_, ledger_);
+    streams_.emplace_back(configuration.streams[i], i, fromSeconds(configuration.max_gap), ledger_);
     all_in_order_ = all_in_order_ && configuration.streams[i].in_order;
   }
 }
@@ -116,6 +116,7 @@ void Sequencer::resetEpisode() {
   opened_ = false;
   open_at_.reset();
   last_stamp_.reset();
+  pacing_.clear();
 }
 
 void Sequencer::end(Nanoseconds request, RowListener& listener) {
@@ -292,10 +293,13 @@ void Sequencer::release(RowListener& listener, bool open_now) {
     PendingRow row = rows_.release();
     if (!row.streams.empty()) appendStreams(row);
     const Nanoseconds stamp = row.row.stamp;
-    if (last_stamp_ && stamp - *last_stamp_ > max_gap_) {
-      ledger_.report(FaultKind::gap, kJointStatesSubject, row.row.receipt, [this, stamp] {
-        return "a gap of " + formatted("%.3f", toSeconds(stamp - *last_stamp_)) +
-               " s in the joint states; were messages lost, or did the robot pause?";
+    const std::optional<Nanoseconds> usual = pacing_.usualInterval();
+    if (const std::optional<Nanoseconds> gap = pacing_.add(stamp)) {
+      ledger_.count(Counter::gaps);
+      ledger_.report(FaultKind::gap, kJointStatesSubject, row.row.receipt, [gap, usual] {
+        return "a gap of " + formatted("%.3f", toSeconds(*gap)) + " s in the joint states" +
+               (usual ? ", which come every " + formatted("%g", toSeconds(*usual)) + " s" : "") +
+               "; were messages lost, or did the robot pause?";
       });
     }
     last_stamp_ = stamp;

@@ -14,6 +14,7 @@
 #include "joint_states.h"
 #include "ledger.h"
 #include "recorded_stream.h"
+#include "row_pacing.h"
 #include "row_queue.h"
 
 namespace demo_logger {
@@ -83,7 +84,6 @@ class Sequencer {
 
   const SynchroniserConfiguration configuration_;
   const Nanoseconds wait_;  // after the receipt of a joint state, for the messages of its row
-  const Nanoseconds max_gap_;
   const Nanoseconds wait_for_streams_;
   bool all_in_order_;
 
@@ -95,6 +95,7 @@ class Sequencer {
   Nanoseconds offset_frozen_at_ = 0;
   std::optional<JointRow> suspect_;
   RowQueue rows_;
+  RowPacing pacing_;  // of the rows that were released
 
   std::uint64_t sequence_ = 0;
   std::uint64_t clock_setting_ = 0;  // of the receipts

@@ -135,6 +135,30 @@ TEST(RowsTest, AGapInTheJointStatesIsReported) {
   EXPECT_EQ(timeline.listener.rows().size(), 3U) << "and nothing is filled in";
 }
 
+TEST(RowsTest, LostJointStatesAreAGapMeasuredByTheirUsualPace) {
+  Timeline timeline(SynchroniserConfiguration{});
+  timeline.begin();
+  for (int ms = 0; ms < 400; ++ms) {
+    if (ms >= 100 && ms < 230) continue;  // 130 lost in a row, far less than max_gap
+    if (ms == 300) continue;              // a single one lost is no gap yet
+    timeline.elbow(ms, 0.0);
+  }
+  timeline.end(2000.0);
+  EXPECT_EQ(timeline.faultWith("gap"),
+            "a gap of 0.131 s in the joint states, which come every 0.001 s; were messages lost, or did the robot "
+            "pause?");
+  EXPECT_EQ(timeline.counter("gaps"), 1U);
+}
+
+TEST(RowsTest, AnUnevenPaceIsNoGap) {
+  Timeline timeline(SynchroniserConfiguration{});
+  timeline.begin();
+  for (int k = 0; k < 200; ++k) timeline.elbow(10.0 * k + 8.0 * (k % 3), 0.0);  // every 6 to 18 ms
+  timeline.end(5000.0);
+  EXPECT_EQ(timeline.counter("gaps"), 0U);
+  EXPECT_EQ(timeline.listener.rows().size(), 200U);
+}
+
 TEST(RowsTest, AMessagePushedBehindTheWatermarkCountsAsReceivedJustAfterIt) {
   SynchroniserConfiguration configuration = numberStreams({Alignment::hold});
   Timeline timeline(configuration);

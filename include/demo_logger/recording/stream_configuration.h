@@ -33,7 +33,7 @@ struct SynchroniserConfiguration {
   std::vector<std::string> prismatic_joints;  // those whose columns are in m, m/s and N
   std::vector<StreamConfiguration> streams;
   double max_wait = 0.1;              // [s] a row waits after its receipt for stragglers
-  double max_gap = 0.5;               // [s] `linear` does not bridge more
+  double max_gap = 0.5;               // [s] `linear` does not bridge more; a longer one between rows is a fault
   double wait_for_streams = 1.0;      // [s] an episode waits for the first message of joy and joint_command streams
   bool merge_joint_states = false;    // joints from other messages than the row's become linear streams of their own
   bool correct_clock_offset = false;  // move unstamped streams by the joint states' clock offset

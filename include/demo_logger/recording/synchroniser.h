@@ -83,7 +83,7 @@ class Synchroniser {
 
   /// Since the episode began (or since the construction, before the first): per stream, and the counters
   ///   rows, late_rows, duplicate_rows, partial_joint_states, foreign_joint_states, malformed_joint_states,
-  ///   malformed_stream_messages, zero_stamps, non_finite_values, non_unit_quaternions, unbridged_gaps,
+  ///   malformed_stream_messages, zero_stamps, non_finite_values, non_unit_quaternions, gaps, unbridged_gaps,
   ///   clock_outliers, overflow (more than memory is bounded to), pushed_late (behind the watermark).
   std::vector<StreamMetadata> streams() const;
   std::map<std::string, std::uint64_t> counters() const;
