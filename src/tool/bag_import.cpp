@@ -23,6 +23,7 @@ RecorderConfiguration makeConfiguration(const BagReader& bag, const ImportPlan& 
   configuration.output_directory = options.output;
   configuration.autostart = true;
   configuration.split_gap = options.split_gap;
+  configuration.writer.may_wait = true;
   configuration.joint_states_topic = plan.joint_states;
   configuration.synchroniser.streams = plan.streams;
   configuration.synchroniser.max_wait = options.max_wait;
