@@ -24,6 +24,7 @@ class DataFile {
   off_t size() const { return size_; }
   /// May be called while another thread appends.
   int syncData() { return file_system_.syncData(descriptor_.get()); }
+  bool isCalled(const std::filesystem::path& name) const { return isSameFile(descriptor_.get(), name); }
 
  private:
   FileSystem& file_system_;

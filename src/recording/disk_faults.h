@@ -12,7 +12,7 @@
 namespace demo_logger {
 
 /// The most important first.
-enum class DiskFaultKind { rows, sidecar, sync, begin, recovery };
+enum class DiskFaultKind { removed, rows, sidecar, sync, begin, recovery };
 
 /// What the disk refused, each kind once with its count, and whether it still does. For several threads.
 class DiskFaults {

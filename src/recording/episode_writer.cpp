@@ -104,6 +104,13 @@ class EpisodeWriter::Implementation {
                          errorText(result) + "); the rows of the last second may be lost if the power fails.",
                      /*lasting=*/false);
     }
+    if (!rows_.hasItsName()) {
+      faults_.report(DiskFaultKind::removed, progress.last_written_stamp,
+                     partFiles(directory_, id_).data.string() +
+                         " has been removed or replaced while it is recorded: its rows are lost when the episode "
+                         "ends. Stop now and start again.",
+                     /*lasting=*/true);
+    }
     const std::int64_t bytes_free = file_system_.freeSpace(directory_);
     const std::lock_guard<std::mutex> lock(mutex_);
     bytes_free_ = bytes_free < 0 ? std::nullopt : std::optional<std::uint64_t>(bytes_free);

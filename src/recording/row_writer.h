@@ -41,6 +41,8 @@ class RowWriter {
   WritingProgress progress() const;
   /// May be called while rows are written. Returns 0 or −errno.
   int syncData() { return data_.syncData(); }
+  /// Whether the file still has its name. May be called while rows are written.
+  bool hasItsName() const { return data_.isCalled(file_); }
   /// Writes what waits, trying a full disk once more only, and ends the thread. Nothing can be written afterwards.
   void close();
 

@@ -191,6 +191,20 @@ TEST_F(DiskFaultsTest, AnEpisodeOfWhichNothingCouldBeWrittenSaysSoAndLeavesNothi
   EXPECT_EQ(directory_.listing(), "");
 }
 
+TEST_F(DiskFaultsTest, AFileThatIsRemovedWhileItIsRecordedIsReportedAtOnce) {
+  const auto writer = makeWriter(options());
+  writer->write(knownRow(0));
+  ASSERT_TRUE(eventually([&] { return writer->bytes() > 0; }));
+  EXPECT_FALSE(writer->fault());
+  const std::filesystem::path part = directory_ / "demo_000001.csv.part";
+  std::filesystem::remove(part);
+  ASSERT_TRUE(eventually([&] { return writer->fault().has_value(); }));
+  EXPECT_EQ(*writer->fault(), part.string() +
+                                  " has been removed or replaced while it is recorded: its rows are lost when the "
+                                  "episode ends. Stop now and start again.");
+  EXPECT_THROW(writer->finish(Metadata{}), FileError);
+}
+
 TEST_F(DiskFaultsTest, AFailingSyncIsReportedAndRecordingGoesOn) {
   const auto writer = makeWriter(options());
   disk_.sync_error = EIO;
