@@ -1,6 +1,7 @@
 #include "joint_states.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -138,17 +139,20 @@ void JointStates::reportUnstamped(const Arrival& arrival) {
 void JointStates::watchPublishers(const JointMapping& mapping, Nanoseconds receipt) {
   const std::size_t publisher = publishers_.last();
   if (publishers_.nameOf(publisher).empty()) return;
-  publisher_of_joint_.resize(mapping.places.size());
+  publishers_of_joint_.resize(mapping.places.size());
   for (std::size_t i = 0; i < mapping.places.size(); ++i) {
     if (!mapping.places[i]) continue;
-    std::optional<std::size_t>& known = publisher_of_joint_[i];
-    if (known && *known != publisher) {
-      ledger_.report(FaultKind::two_publishers, kJointStatesSubject, receipt, [&] {
-        return "joint " + layout_.joints()[i] + " is published by " + publishers_.nameOf(*known) + " and by " +
-               publishers_.nameOf(publisher) + ": the rows mix both; stop one of them or remap its topic";
+    auto& [last, earlier] = publishers_of_joint_[i];
+    if (last == publisher) continue;
+    // A node that took over from another, such as a restarted driver, is alone; one that comes back is not.
+    if (earlier == publisher) {
+      ledger_.report(FaultKind::two_publishers, kJointStatesSubject, receipt, [&, other = *last] {
+        return "joint " + layout_.joints()[i] + " is published by " + publishers_.nameOf(publisher) + " and by " +
+               publishers_.nameOf(other) + ": the rows mix both; stop one of them or remap its topic";
       });
     }
-    known = publisher;
+    earlier = last;
+    last = publisher;
   }
 }
 
@@ -177,7 +181,9 @@ std::vector<double> JointStates::valuesOf(const JointStateSample& sample, const 
   const std::size_t joints = mapping.places.size();
   std::vector<double> values;
   values.reserve(kQuantities * joints + 1 + 2 * joints);
-  for (const std::vector<double>* quantity : {&sample.position, &sample.velocity, &sample.effort}) {
+  const std::array<std::pair<const char*, const std::vector<double>*>, kQuantities> quantities = {
+      {{"a position", &sample.position}, {"a velocity", &sample.velocity}, {"an effort", &sample.effort}}};
+  for (const auto& [name, quantity] : quantities) {
     for (std::size_t i = 0; i < joints; ++i) {
       double value = kNaN;
       if (mapping.places[i] && !quantity->empty()) {
@@ -185,8 +191,9 @@ std::vector<double> JointStates::valuesOf(const JointStateSample& sample, const 
         if (!std::isfinite(value)) {
           value = kNaN;
           ledger_.count(Counter::non_finite_values);
-          ledger_.report(FaultKind::non_finite_value, kJointStatesSubject, sample.arrival.receipt, [&] {
-            return "joint " + layout_.joints()[i] + " came with a value that is not finite; it is recorded as NaN";
+          ledger_.report(FaultKind::non_finite_joint, values.size(), sample.arrival.receipt, [&] {
+            return "joint " + layout_.joints()[i] + " came with " + std::string(name) +
+                   " that is not finite; it is recorded as NaN";
           });
         }
       }
@@ -267,7 +274,7 @@ void JointStates::writeMerged(Nanoseconds instant, Nanoseconds receipt, std::vec
 }
 
 void JointStates::beginEpisode() {
-  publisher_of_joint_.clear();
+  publishers_of_joint_.clear();
   merged_.clear();
 }
 

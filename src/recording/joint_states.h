@@ -64,6 +64,11 @@ class JointStates {
   std::size_t size() const;
 
  private:
+  struct JointPublishers {
+    std::optional<std::size_t> last;
+    std::optional<std::size_t> earlier;  // the one before
+  };
+
   /// Where the message has the arm's joints; nullptr (counted, reported) if it has none that can be used.
   const JointMapping* mapJoints(JointStateSample& sample, const char* rejected, Nanoseconds receipt);
   std::optional<Nanoseconds> place(const JointStateSample& sample, const Reception& reception);
@@ -83,7 +88,7 @@ class JointStates {
   AlignmentRule merging_rule_;
   bool ready_ = false;
   PublisherTable publishers_;
-  std::vector<std::optional<std::size_t>> publisher_of_joint_;
+  std::vector<JointPublishers> publishers_of_joint_;
   std::uint64_t last_mapping_ = 0;
   std::vector<std::string> last_names_;  // sorted, of the last message that could make a row
   std::optional<std::string> last_frame_;

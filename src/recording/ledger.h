@@ -47,6 +47,7 @@ enum class FaultKind {
   unstamped,
   zero_stamp,
   non_finite_value,
+  non_finite_joint,
   non_unit_quaternion,
   out_of_order,
   late_row,

@@ -202,7 +202,7 @@ TEST(AlignmentTest, ValuesThatAreNotFiniteAreMissing) {
   EXPECT_EQ(timeline.counter("non_finite_values"), 2U);
   EXPECT_EQ(timeline.faultWith("stream s0"), "stream s0 (/s0) sent a value that is not finite; it is recorded as NaN");
   EXPECT_EQ(timeline.faultWith("joint elbow"),
-            "joint elbow came with a value that is not finite; it is recorded as NaN");
+            "joint elbow came with a position that is not finite; it is recorded as NaN");
 }
 
 TEST(AlignmentTest, EpochStampsKeepTheirNanosecond) {

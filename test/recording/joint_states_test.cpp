@@ -168,14 +168,30 @@ TEST(JointStatesTest, ChangesOfNamesFrameAndPublisherAreReported) {
   sample.arrival.publisher = "/impostor";
   sample.arrival.frame_id = "world";
   timeline.synchroniser.push(sample);
+  sample = makeJointState(at(20.0), at(21.0), {"elbow"}, {1.0});
+  sample.arrival.publisher = "/arm";
+  sample.arrival.frame_id = "base";
+  timeline.synchroniser.push(sample);
   timeline.end(200.0);
-  EXPECT_EQ(timeline.listener.rows().size(), 2U) << "the episode goes on";
+  EXPECT_EQ(timeline.listener.rows().size(), 3U) << "the episode goes on";
   EXPECT_EQ(
       timeline.faultWith("published by"),
       "joint elbow is published by /arm and by /impostor: the rows mix both; stop one of them or remap its topic");
   EXPECT_EQ(timeline.faultWith("frame_id"), "joint states of /impostor changed their frame_id from 'base' to 'world'");
   EXPECT_EQ(timeline.faultWith("changed their joints"),
             "joint states of /impostor changed their joints from elbow to elbow, finger");
+}
+
+TEST(JointStatesTest, APublisherThatTakesOverFromAnotherIsNoFault) {
+  Timeline timeline(armOf({"elbow"}));
+  timeline.begin();
+  for (int k = 0; k < 10; ++k) {
+    JointStateSample sample = makeJointState(at(10.0 * k), at(10.0 * k + 1.0), {"elbow"}, {1.0});
+    sample.arrival.publisher = k < 5 ? "/driver" : "/driver_restarted";
+    timeline.synchroniser.push(sample);
+  }
+  timeline.end(200.0);
+  EXPECT_TRUE(timeline.synchroniser.faults().empty());
 }
 
 TEST(JointStatesTest, ColumnsSayWhatTheyAre) {
