@@ -74,6 +74,7 @@ void RecordedStream::receive(StreamSample& sample, const char* rejected, const R
   }
   checkValues(sample, receipt);
   watchFrame(sample.arrival);
+  if (message_type_ != sample.message_type) message_type_ = std::move(sample.message_type);
   insert(*effective,
          StreamMessage{std::move(sample.values), reception.sequence, reception.episode, 0, publishers_.last()}, decided,
          receipt);
@@ -264,8 +265,9 @@ StreamMetadata RecordedStream::metadata(std::uint64_t episode) const {
   StreamMetadata metadata;
   metadata.name = configuration_.name;
   metadata.topic = configuration_.topic;
-  if (layout_) metadata.type = demo_logger::nameOf(layout_->type);
-  if (!layout_ && configuration_.type) metadata.type = demo_logger::nameOf(*configuration_.type);
+  metadata.type = message_type_;
+  if (metadata.type.empty() && layout_) metadata.type = demo_logger::nameOf(layout_->type);
+  if (metadata.type.empty() && configuration_.type) metadata.type = demo_logger::nameOf(*configuration_.type);
   metadata.frame_id = frame_.value_or("");
   metadata.publishers = publishers_.heard();
   metadata.stamped = !publishers_.anyUnstamped();

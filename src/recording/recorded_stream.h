@@ -75,6 +75,7 @@ class RecordedStream {
   StreamBuffer buffer_;
   PublisherTable publishers_;
   std::optional<std::string> frame_;
+  std::string message_type_;           // of the last message
   std::optional<Nanoseconds> newest_;  // effective stamp
   bool left_out_ = false;
 

@@ -47,7 +47,7 @@ Message toMessage(std::size_t stream, StreamSample sample) {
   if (std::max({sample.components.size(), sample.units.size(), sample.values.size()}) > kMostValues) {
     rejected = "more than 1000 values";
   }
-  if (rejected != nullptr) sample = StreamSample{std::move(sample.arrival), sample.type, {}, {}, {}};
+  if (rejected != nullptr) sample = StreamSample{std::move(sample.arrival), {}, sample.type, {}, {}, {}};
   const Nanoseconds received = sample.arrival.receipt;
   return Message{stream, received, std::move(sample), rejected};
 }

@@ -119,7 +119,9 @@ StreamSample toStreamSample(const RawMessage& message, Arrival arrival) {
   if (converter == nullptr) {
     throw Error(message.datatype + ": cannot be recorded as a stream; supported are " + supportedStreamTypes());
   }
-  return converter->convert(message, std::move(arrival));
+  StreamSample sample = converter->convert(message, std::move(arrival));
+  sample.message_type = converter->datatype;
+  return sample;
 }
 
 JointStateSample toJointStateSample(const RawMessage& message, Arrival arrival) {

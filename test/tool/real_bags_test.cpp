@@ -248,7 +248,7 @@ TEST_F(RealBagsTest, TheNeatoHoldsItsUnstampedTwistByReceiptAndSaysSo) {
   EXPECT_FALSE(command->stamped);
   EXPECT_EQ(command->received, 25U);
   EXPECT_EQ(command->topic, "/cmd_vel");
-  EXPECT_EQ(command->type, "twist");
+  EXPECT_EQ(command->type, "geometry_msgs/Twist");
 }
 
 }  // namespace

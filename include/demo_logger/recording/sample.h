@@ -34,6 +34,7 @@ enum class StreamType { twist, pose, wrench, number, joy, joint_command };
 ///   joy axis0 … button0 … · joint_command: one value per name
 struct StreamSample {
   Arrival arrival;
+  std::string message_type;  // as the source calls it ("geometry_msgs/Twist"), for the metadata; may be empty
   StreamType type = StreamType::number;
   std::vector<std::string> components;  // joy: axis0 … button0 …; joint_command: joint names; else empty
   std::vector<std::string> units;       // as long as components, or empty

@@ -51,7 +51,7 @@ struct DelaySummary {
 struct StreamMetadata {
   std::string name;
   std::string topic;
-  std::string type;
+  std::string type;  // of its messages: "geometry_msgs/Twist"
   std::string frame_id;
   std::vector<std::string> publishers;
   bool stamped = true;
