@@ -1,22 +1,15 @@
 #include "demo_logger/channels/teleop_map.h"
 
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
 
 constexpr int kOutputs = 6;  // of a twist, and of a position with a rotation vector
-
-std::string print(double number) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << number;
-  return text.str();
-}
 
 [[noreturn]] void refuse(const std::string& field, const std::string& found, const std::string& expected) {
   throw ConfigurationError("teleoperation map: " + field + " is " + found + ", expected " + expected + ".");

@@ -1,9 +1,9 @@
 #include "src/nodes/recording_diagnostics.h"
 
 #include <cmath>
-#include <cstdio>
 #include <set>
 
+#include "demo_logger/trajectory/print.h"
 #include "src/ros/message_conversion.h"
 
 namespace demo_logger {
@@ -17,17 +17,12 @@ constexpr double kFewMinutesLeft = 10.0;       // [min] on the disk
 constexpr double kNormalOffsetLower = -0.020;  // [s] receipt - stamp, beyond which the clocks or the transport are
 constexpr double kNormalOffsetUpper = 0.100;   // worth a word
 
-std::string withDigits(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 /// Counters that mean that something is missing from the recording.
 const std::set<std::string>& losingCounters() {
   static const std::set<std::string> names = {
-      "late_rows",         "duplicate_rows", "malformed_joint_states", "zero_stamps",    "malformed_stream_messages",
-      "non_finite_values", "overflow",       "non_unit_quaternions",   "unbridged_gaps", "clock_outliers"};
+      "late_rows",         "duplicate_rows", "malformed_joint_states", "zero_stamps", "malformed_stream_messages",
+      "non_finite_values", "overflow",       "non_unit_quaternions",   "gaps",        "unbridged_gaps",
+      "clock_outliers"};
   return names;
 }
 
@@ -86,13 +81,13 @@ void RecordingDiagnostics::reportJointStates(Report& report) {
   if (!problem.empty()) {
     report.summary(DiagnosticStatus::ERROR, problem);
   } else if (silence > kLongestSilence) {
-    const std::string since = topic.last ? withDigits("ROS time %.1f", toSeconds(*topic.last)) : "the node began";
+    const std::string since = topic.last ? "ROS time " + print(toSeconds(*topic.last), 1) : "the node began";
     report.summary(DiagnosticStatus::ERROR,
-                   "no JointState on " + topic.topic + " since " + since + withDigits(", %.1f s ago", silence));
+                   "no JointState on " + topic.topic + " since " + since + ", " + print(silence, 1) + " s ago");
   } else if (joint_states_ == 0) {
     report.summary(DiagnosticStatus::WARN, "waiting for the first JointState on " + topic.topic);
   } else {
-    report.summary(DiagnosticStatus::OK, withDigits("%.1f Hz on ", rate) + topic.topic);
+    report.summary(DiagnosticStatus::OK, print(rate, 1) + " Hz on " + topic.topic);
   }
 }
 
@@ -112,7 +107,7 @@ void RecordingDiagnostics::reportRecording(Report& report) const {
     report.mergeSummary(error ? DiagnosticStatus::ERROR : DiagnosticStatus::WARN, fault.what);
   }
   if (status.state == RecorderState::recording && status.minutes_left < kFewMinutesLeft) {
-    report.mergeSummary(DiagnosticStatus::WARN, withDigits("%.1f minutes until the disk is full", status.minutes_left));
+    report.mergeSummary(DiagnosticStatus::WARN, print(status.minutes_left, 1) + " minutes until the disk is full");
   }
 }
 
@@ -128,7 +123,7 @@ void RecordingDiagnostics::reportClock(Report& report) const {
     unstamped = unstamped || (!stream.stamped && stream.received > 0);
   }
   const std::string sentence =
-      "joint-state stamps are " + withDigits("%.1f", 1000.0 * *offset) + " ms from this clock (transport or skew)";
+      "joint-state stamps are " + print(1000.0 * *offset, 1) + " ms from this clock (transport or skew)";
   if (std::abs(*offset) > kDistantClock && unstamped && !correct_clock_offset_) {
     report.summary(DiagnosticStatus::ERROR,
                    sentence +
@@ -169,7 +164,7 @@ void RecordingDiagnostics::reportStream(std::size_t source, Report& report) cons
     report.summary(DiagnosticStatus::OK, "nothing on " + topic.topic + " yet");
   } else {
     const double age = toSeconds(toNanoseconds(ros::Time::now()) - *topic.last);
-    report.summary(DiagnosticStatus::OK, topic.topic + withDigits(": last message %.1f s ago", age));
+    report.summary(DiagnosticStatus::OK, topic.topic + ": last message " + print(age, 1) + " s ago");
   }
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "demo_logger/trajectory/print.h"
+
 namespace demo_logger {
 
 void Findings::add(const std::string& kind, Severity severity, const std::string& sentence) {
@@ -40,11 +42,7 @@ std::string formatDuration(double seconds) {
   return small ? formatNumber(1e3 * seconds) + " ms" : formatNumber(seconds) + " s";
 }
 
-std::string formatInstant(double seconds) {
-  char text[64];
-  const auto [end, error] = std::to_chars(text, text + sizeof(text), seconds, std::chars_format::fixed, 3);
-  return "at " + (error == std::errc() ? std::string(text, end) : formatNumber(seconds)) + " s";
-}
+std::string formatInstant(double seconds) { return "at " + print(seconds, 3) + " s"; }
 
 std::string formatShare(double share) { return formatNumber(100.0 * share) + " %"; }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "demo_logger/trajectory/print.h"
+
 namespace demo_logger {
 namespace {
 
@@ -268,7 +270,7 @@ void JointStates::writeMerged(Nanoseconds instant, Nanoseconds receipt, std::vec
       return "joint " + layout_.joints()[joint] +
              " could not be interpolated: no later message came in time, or more "
              "than max_gap (" +
-             std::to_string(toSeconds(merging_rule_.max_gap)) + " s) after the earlier one";
+             print(toSeconds(merging_rule_.max_gap)) + " s) after the earlier one";
     });
   }
 }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "demo_logger/trajectory/print.h"
+
 namespace demo_logger {
 namespace {
 
@@ -143,7 +145,7 @@ std::optional<Nanoseconds> RecordedStream::place(const Arrival& arrival, const R
 bool RecordedStream::keepsOrder(Nanoseconds effective, Nanoseconds receipt) {
   if (configuration_.in_order && newest_ && effective <= *newest_) {
     ledger_.report(FaultKind::out_of_order, index_, receipt, [&] {
-      return title() + " is declared in_order, but a message came " + std::to_string(toSeconds(*newest_ - effective)) +
+      return title() + " is declared in_order, but a message came " + print(toSeconds(*newest_ - effective), 6) +
              " s behind the one before it; it was dropped. Without in_order it would be put into order";
     });
     return false;
@@ -230,7 +232,7 @@ void RecordedStream::write(Nanoseconds instant, Nanoseconds receipt, std::uint64
   ledger_.count(Counter::unbridged_gaps);
   ledger_.report(FaultKind::unbridged, index_, receipt, [&] {
     return title() + " could not be interpolated: no later message came in time, or more than max_gap (" +
-           std::to_string(toSeconds(rule_.max_gap)) + " s) after the earlier one; such values are NaN";
+           print(toSeconds(rule_.max_gap)) + " s) after the earlier one; such values are NaN";
   });
 }
 

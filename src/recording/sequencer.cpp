@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
+#include "demo_logger/trajectory/print.h"
 #include "row_columns.h"
 
 namespace demo_logger {
@@ -31,12 +31,6 @@ Nanoseconds rowWait(const SynchroniserConfiguration& configuration) {
     largest_latency = std::max(largest_latency, fromSeconds(stream.latency));
   }
   return fromSeconds(configuration.max_wait) + largest_latency;
-}
-
-std::string formatted(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 }  // namespace
@@ -235,7 +229,7 @@ void Sequencer::admit(JointRow row, RowListener& listener) {
       ledger_.count(Counter::late_rows);
       ledger_.report(FaultKind::late_row, kJointStatesSubject, receipt, [this, stamp] {
         return "a joint state came when later ones had become rows, " +
-               formatted("%.3f", toSeconds(last_stamp_.value_or(stamp) - stamp)) +
+               print(toSeconds(last_stamp_.value_or(stamp) - stamp), 3) +
                " s behind them; it was dropped. A longer max_wait leaves more time to put them into order";
       });
       return;
@@ -297,8 +291,8 @@ void Sequencer::release(RowListener& listener, bool open_now) {
     if (const std::optional<Nanoseconds> gap = pacing_.add(stamp)) {
       ledger_.count(Counter::gaps);
       ledger_.report(FaultKind::gap, kJointStatesSubject, row.row.receipt, [gap, usual] {
-        return "a gap of " + formatted("%.3f", toSeconds(*gap)) + " s in the joint states" +
-               (usual ? ", which come every " + formatted("%g", toSeconds(*usual)) + " s" : "") +
+        return "a gap of " + print(toSeconds(*gap), 3) + " s in the joint states" +
+               (usual ? ", which come every " + print(toSeconds(*usual)) + " s" : "") +
                "; were messages lost, or did the robot pause?";
       });
     }
@@ -325,7 +319,7 @@ void Sequencer::open(RowListener& listener) {
     ledger_.report(FaultKind::left_out, i, rows_.first()->row.receipt, [this, &stream] {
       return "stream " + stream.configuration().name + " (" + stream.configuration().topic +
              ") is left out of this episode: no message showed its columns within wait_for_streams (" +
-             formatted("%g", configuration_.wait_for_streams) + " s) after the first joint state. Does it publish?";
+             print(configuration_.wait_for_streams) + " s) after the first joint state. Does it publish?";
     });
   }
   original_names_ = makePortable(columns);
@@ -366,10 +360,10 @@ std::vector<Fault> Sequencer::faults() const {
   std::vector<Fault> faults;
   const std::optional<Nanoseconds> offset = offset_.value();
   if (offset && (*offset < kEarliestOffset || *offset > kLatestOffset)) {
-    faults.push_back({offset_frozen_at_,
-                      "joint-state stamps are " + formatted("%.1f", 1000.0 * toSeconds(*offset)) +
-                          " ms from this clock (transport or skew)",
-                      1, Severity::warning});
+    faults.push_back(
+        {offset_frozen_at_,
+         "joint-state stamps are " + print(1000.0 * toSeconds(*offset), 1) + " ms from this clock (transport or skew)",
+         1, Severity::warning});
   }
   if (offset && std::abs(*offset) > kDistantClock && !configuration_.correct_clock_offset) {
     for (const RecordedStream& stream : streams_) {
@@ -377,7 +371,7 @@ std::vector<Fault> Sequencer::faults() const {
       faults.push_back({offset_frozen_at_,
                         "stream " + stream.configuration().name + " (" + stream.configuration().topic +
                             ") has no stamps and is placed by this machine's clock, but the joint states' clock is " +
-                            formatted("%.3f", toSeconds(*offset)) +
+                            print(toSeconds(*offset), 3) +
                             " s away: its columns are useless. Synchronise the clocks, or set correct_clock_offset",
                         1, Severity::error});
     }

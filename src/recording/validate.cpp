@@ -1,11 +1,11 @@
 #include <cmath>
-#include <cstdio>
 #include <set>
 #include <string>
 
 #include "demo_logger/formats/column_names.h"
 #include "demo_logger/recording/stream_configuration.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
@@ -13,15 +13,9 @@ namespace {
 constexpr double kLargestLatency = 10.0;  // [s]
 constexpr double kLongestWait = 1e9;      // [s] keeps instants within 64 bits
 
-std::string seconds(double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%g s", value);
-  return text;
-}
-
 void checkWait(const std::string& name, double value) {
   if (value >= 0.0 && value <= kLongestWait) return;  // not NaN
-  throw ConfigurationError(name + " is " + seconds(value) + ", expected a finite time of at least 0 s");
+  throw ConfigurationError(name + " is " + print(value) + " s, expected a finite time of at least 0 s");
 }
 
 void checkJoints(const SynchroniserConfiguration& configuration) {
@@ -53,7 +47,8 @@ void checkStream(const StreamConfiguration& stream, std::set<std::string>& prefi
   }
   if (stream.topic.empty()) throw ConfigurationError(where + " has an empty topic, expected the topic to record");
   if (!(std::abs(stream.latency) <= kLargestLatency)) {
-    throw ConfigurationError(where + " has a latency of " + seconds(stream.latency) +
+    throw ConfigurationError(where + " has a latency of " + print(stream.latency) +
+                             " s"
                              ", expected one from -10 s to 10 s");
   }
   if (stream.type == StreamType::joy && stream.alignment == Alignment::linear) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 #include "src/ros/message_conversion.h"
 
 namespace demo_logger {
@@ -69,8 +70,8 @@ class BagReader::Implementation {
       try {
         take(*next, message, bytes);
       } catch (const std::exception& error) {
-        throw FileError(path_.string() + ": damaged after " + std::to_string(toSeconds(message.arrival.receipt)) +
-                        " s (" + error.what() + "); try `rosbag reindex`");
+        throw FileError(path_.string() + ": damaged after " + print(toSeconds(message.arrival.receipt), 3) + " s (" +
+                        error.what() + "); try `rosbag reindex`");
       }
       visit(message);
       advance(next, message);
@@ -120,8 +121,8 @@ class BagReader::Implementation {
     try {
       ++next;
     } catch (const std::exception& error) {
-      throw FileError(path_.string() + ": damaged after " + std::to_string(toSeconds(message.arrival.receipt)) +
-                      " s (" + error.what() + ")");
+      throw FileError(path_.string() + ": damaged after " + print(toSeconds(message.arrival.receipt), 3) + " s (" +
+                      error.what() + ")");
     }
   }
 

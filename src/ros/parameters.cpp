@@ -1,8 +1,9 @@
 #include "src/ros/parameters.h"
 
 #include <cmath>
-#include <sstream>
 #include <utility>
+
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
@@ -11,13 +12,6 @@ using XmlRpc::XmlRpcValue;
 
 std::string withUnit(const std::string& text, const Range& range) {
   return range.unit.empty() ? text : text + " " + range.unit;
-}
-
-std::string print(double number) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << number;
-  return text.str();
 }
 
 std::string expectation(const std::string& kind, const Range& range) {

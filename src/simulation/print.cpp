@@ -1,21 +1,11 @@
 #include "print.h"
 
-#include <locale>
-#include <sstream>
-
 namespace demo_logger {
 namespace {
 
 bool slides(const ArmJoint& joint) { return joint.type == JointType::prismatic; }
 
 }  // namespace
-
-std::string print(double number) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << number;
-  return text.str();
-}
 
 std::string printPosition(const ArmJoint& joint, double position) {
   return print(position) + (slides(joint) ? " m" : " rad");

@@ -3,11 +3,9 @@
 #include <string>
 
 #include "demo_logger/robot/robot_description.h"
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
-
-/// A number for a message: at most six digits, `.` whatever the locale.
-std::string print(double number);
 
 /// "1.5 rad", "0.2 m/s", "12 N m": a quantity of this joint with the unit that its type gives it.
 std::string printPosition(const ArmJoint& joint, double position);

@@ -1,11 +1,11 @@
 #include "src/tool/recording_summary.h"
 
-#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
 
 #include "demo_logger/formats/sidecar.h"
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
@@ -24,13 +24,7 @@ std::ostringstream classicStream() {
   return text;
 }
 
-std::string number(double value, int digits) {
-  std::ostringstream text = classicStream();
-  text << std::fixed << std::setprecision(digits) << value;
-  return text.str();
-}
-
-std::string milliseconds(double seconds) { return number(1000.0 * seconds, 1) + " ms"; }
+std::string milliseconds(double seconds) { return print(1000.0 * seconds, 1) + " ms"; }
 
 std::string describeCounts(const StreamMetadata& stream) {
   std::string text = std::to_string(stream.received) + " received";
@@ -107,8 +101,8 @@ std::string toText(const RecordingSummary& summary) {
   const CheckSummary& figures = summary.figures;
   std::ostringstream text = classicStream();
   text << summary.file.string() << '\n'
-       << "  " << figures.rows << " rows in " << number(figures.duration, 3) << " s: " << number(figures.mean_rate, 1)
-       << " Hz, largest gap " << milliseconds(figures.largest_gap) << " at " << number(figures.largest_gap_at, 3)
+       << "  " << figures.rows << " rows in " << print(figures.duration, 3) << " s: " << print(figures.mean_rate, 1)
+       << " Hz, largest gap " << milliseconds(figures.largest_gap) << " at " << print(figures.largest_gap_at, 3)
        << " s\n";
   if (summary.has_sidecar) {
     text << "  channel " << metadata.channel << (metadata.task.empty() ? "" : ", task " + metadata.task) << ", outcome "
@@ -125,7 +119,7 @@ std::string toText(const RecordingSummary& summary) {
     text << "  fault: " << fault.what << " (" << fault.count << " times)\n";
   }
   text << "  columns: time" << joinColumns(summary.columns) << '\n'
-       << "  files: " << summary.file.filename().string() << " (" << number(static_cast<double>(summary.bytes) / 1e6, 2)
+       << "  files: " << summary.file.filename().string() << " (" << print(static_cast<double>(summary.bytes) / 1e6, 2)
        << " MB)" << (summary.has_sidecar ? ", " + sidecarPath(summary.file).filename().string() : "") << '\n';
   for (const std::string& note : summary.notes) {
     text << "  note: " << note << '\n';

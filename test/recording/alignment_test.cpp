@@ -73,7 +73,7 @@ TEST(AlignmentTest, LinearIsMissingWithoutALaterNeighbourInTime) {
   EXPECT_DOUBLE_EQ(timeline.listener.at(1, "s0_value"), 2.2) << "but within that of the next row";
   EXPECT_EQ(timeline.counter("unbridged_gaps"), 1U);
   EXPECT_EQ(timeline.faultWith("interpolated"),
-            "stream s0 (/s0) could not be interpolated: no later message came in time, or more than max_gap (0.500000 "
+            "stream s0 (/s0) could not be interpolated: no later message came in time, or more than max_gap (0.5 "
             "s) after the earlier one; such values are NaN");
 }
 

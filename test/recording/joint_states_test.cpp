@@ -138,7 +138,7 @@ TEST(JointStatesTest, AMergedJointWithoutALaterNeighbourIsMissingAndCounted) {
   EXPECT_EQ(timeline.listener.at(0, "wrist_age"), 0.004);
   EXPECT_EQ(timeline.counter("unbridged_gaps"), 1U);
   EXPECT_EQ(timeline.faultWith("joint wrist"),
-            "joint wrist could not be interpolated: no later message came in time, or more than max_gap (0.500000 s) "
+            "joint wrist could not be interpolated: no later message came in time, or more than max_gap (0.5 s) "
             "after the earlier one");
 }
 
