@@ -26,9 +26,13 @@ class Demonstration:
     def __init__(self, path):
         with open(path, encoding="utf-8") as file:
             self.names = file.readline().strip().split(",")
-        table = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
-        if table.shape[0] < 2:
-            raise ValueError(f"{path}: {table.shape[0]} rows, expected at least 2 to draw")
+            lines = file.read().splitlines()
+        if len(lines) < 2:
+            raise ValueError(f"{path}: {len(lines)} rows, expected at least 2 to draw")
+        try:
+            table = np.loadtxt(lines, delimiter=",", ndmin=2)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error} (row 0 follows the header); `demo_tool check` says more") from None
         self.values = dict(zip(self.names, table.T))
         if "time" not in self.values:
             raise ValueError(f"{path}: has no column \"time\"; is it a demonstration?")
