@@ -106,6 +106,9 @@ Reply Recorder::Implementation::discard(Nanoseconds now) {
 }
 
 Reply Recorder::Implementation::label(const std::string& id, const EpisodeLabel& label) {
+  if (label.outcome.empty() && label.task.empty() && label.operator_name.empty() && label.notes.empty()) {
+    return failure("Nothing was changed: outcome, task, operator_name and notes are all empty.");
+  }
   try {
     if (episode_ && (id.empty() || id == episode_->id())) {
       labelOpen(label);

@@ -158,6 +158,8 @@ TEST_F(RecorderTest, LabelRefusesWhatIsNoOutcomeAndWhatIsNoEpisode) {
             "outcome is \"great\", expected success, failure or unknown.");
   EXPECT_EQ(recorder_->label("../x", "success", "", "", "").message,
             "\"../x\" is not the id of an episode; expected letters, digits, _ and - alone, as in demo_000001.");
+  EXPECT_EQ(recorder_->label("", "", "", "", "").message,
+            "Nothing was changed: outcome, task, operator_name and notes are all empty.");
   EXPECT_EQ(recorder_->label("demo_000007", "success", "", "", "").message,
             file("").parent_path().string() + " has no finished episode demo_000007, expected a file demo_000007.csv.");
 }
