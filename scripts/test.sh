@@ -77,7 +77,9 @@ suppressions=$project/cmake/sanitizer
 export ASAN_OPTIONS="log_path=$reports/report:detect_stack_use_after_return=1:strict_string_checks=1"
 export LSAN_OPTIONS="suppressions=$suppressions/leak.txt:print_suppressions=0"
 export UBSAN_OPTIONS="log_path=$reports/report:print_stacktrace=1"
-export TSAN_OPTIONS="log_path=$reports/report:suppressions=$suppressions/thread.txt:second_deadlock_stack=1"
+# Where an unlock happens in a library without instrumentation, the detector of lock orders believes the lock held, until
+# it has no room for more and gives up.
+export TSAN_OPTIONS="log_path=$reports/report:suppressions=$suppressions/thread.txt:detect_deadlocks=0"
 
 rm -rf "$tree/test_results"
 status=0
