@@ -75,7 +75,7 @@ class SimulatedHumanNode {
     if (next_reading_ ? now < *next_reading_ : joy_.getNumSubscribers() < listeners_) return;
     const std::optional<Eigen::VectorXd> q = positions(state);
     if (!q) {
-      ROS_ERROR_STREAM_THROTTLE(kPatience, truth_.getTopic() << " lacks joints of " << model_.description().name
+      ROS_ERROR_STREAM_THROTTLE(kPatience, truth_.getTopic() << " lacks positions of " << model_.description().name
                                                              << ", expected all from " << model_.description().base
                                                              << " to " << model_.description().tip << ".");
       return;
@@ -95,6 +95,7 @@ class SimulatedHumanNode {
       const auto found = std::find(state.name.begin(), state.name.end(), name);
       const auto index = static_cast<std::size_t>(found - state.name.begin());
       if (found == state.name.end() || index >= state.position.size()) return std::nullopt;
+      if (!std::isfinite(state.position[index])) return std::nullopt;
       q[i] = state.position[index];
     }
     return q;

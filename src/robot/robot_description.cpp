@@ -196,6 +196,32 @@ RobotDescription describeRobotFile(const std::string& path, const DescriptionOpt
   return describe(path, urdf_xml, options);
 }
 
+RobotDescription withDrives(const RobotDescription& description, const std::map<std::string, JointDrive>& drives) {
+  RobotDescription driven = description;
+  for (const auto& [name, drive] : drives) {
+    const auto joint = std::find_if(driven.joints.begin(), driven.joints.end(),
+                                    [&name = name](const ArmJoint& candidate) { return candidate.name == name; });
+    if (joint == driven.joints.end()) {
+      throw ModelError("no joint '" + name + "' to drive in the arm of robot '" + driven.name +
+                       "'; the nearest names are " + nearNames(name, driven.jointNames()));
+    }
+    const auto set = [&name = name](const char* what, const std::optional<double>& given, double& value) {
+      if (!given) return;
+      if (!std::isfinite(*given) || *given < 0.0) {
+        std::ostringstream sentence;
+        sentence << "joint '" << name << "' cannot have the " << what << " " << *given << ", expected 0 or more";
+        throw ModelError(sentence.str());
+      }
+      value = *given;
+    };
+    set("motor inertia", drive.motor_inertia, joint->motor_inertia);
+    set("damping", drive.damping, joint->damping);
+    set("friction", drive.friction, joint->friction);
+    set("friction velocity", drive.friction_velocity, joint->friction_velocity);
+  }
+  return driven;
+}
+
 RobotDescription withLoad(const RobotDescription& description, const BodyInertia& load) {
   if (description.joints.empty()) throw ModelError("the load needs an arm with at least one joint");
   const std::string impossible = load.mass == 0.0 ? "no mass" : impossibility(load);

@@ -7,8 +7,6 @@
 #include <limits>
 #include <random>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "demo_logger/trajectory/error.h"
 #include "test/robot/own_arms.h"
@@ -114,22 +112,70 @@ TEST(RobotModelTest, InverseDynamicsIsTheSumOfItsTerms) {
   }
 }
 
-TEST(RobotModelTest, NotANumberInGivesNotANumberOut) {
+TEST(RobotModelTest, ValuesThatAreNotFiniteAreRefusedByName) {
   const RobotModel model(describeOwnArm("demo_arm"));
   const Eigen::VectorXd fine = Eigen::VectorXd::Constant(7, 0.4);
+  Eigen::VectorXd nan = fine, infinite = fine;
+  nan[6] = std::numeric_limits<double>::quiet_NaN();
+  infinite[1] = -std::numeric_limits<double>::infinity();
+  const std::string position = "robot 'demo_arm': q of joint 'joint_7' is nan, expected a finite position in rad";
+  EXPECT_EQ(errorOf([&] { model.forwardKinematics(nan); }), position);
+  EXPECT_EQ(errorOf([&] { model.jacobian(nan); }), position);
+  EXPECT_EQ(errorOf([&] { model.gravity(nan); }), position);
+  EXPECT_EQ(errorOf([&] { model.massMatrix(nan); }), position);
+  EXPECT_EQ(errorOf([&] { model.coriolis(nan, fine); }), position);
+  EXPECT_EQ(errorOf([&] { model.inverseDynamics(nan, fine, fine); }), position);
+  EXPECT_EQ(errorOf([&] { model.motorTorque(nan, fine, fine); }), position);
+  const std::string velocity = "robot 'demo_arm': dq of joint 'joint_2' is -inf, expected a finite velocity in rad/s";
+  EXPECT_EQ(errorOf([&] { model.coriolis(fine, infinite); }), velocity);
+  EXPECT_EQ(errorOf([&] { model.inverseDynamics(fine, infinite, fine); }), velocity);
+  EXPECT_EQ(errorOf([&] { model.motorTorque(fine, infinite, fine); }), velocity);
+  EXPECT_EQ(errorOf([&] { model.friction(infinite); }), velocity);
+  EXPECT_EQ(errorOf([&] { model.inverseDynamics(fine, fine, infinite); }),
+            "robot 'demo_arm': ddq of joint 'joint_2' is -inf, expected a finite acceleration in rad/s²");
+  TipWrench wrench;
+  wrench.torque.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(errorOf([&] { model.inverseDynamics(fine, fine, fine, wrench); }),
+            "robot 'demo_arm': the wrench at tip 'tool_tip' is not finite, expected N and N m");
+  EXPECT_EQ(errorOf([&] { model.inverseDynamics(fine, 1e200 * fine, fine); }),
+            "robot 'demo_arm': the result overflows; the largest value given is 4e+199");
+  EXPECT_TRUE(model.gravity(fine).allFinite()) << "a bad value leaves nothing behind";
+}
+
+TEST(RobotModelTest, AControlLoopIsToldWithoutAnException) {
+  const RobotModel model(describeOwnArm("demo_arm"));
+  const Eigen::VectorXd fine = Eigen::VectorXd::Constant(7, 0.4);
+  Eigen::Isometry3d pose;
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd torque;
   for (const double poison : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Eigen::VectorXd bad = fine;
     bad[6] = poison;
-    EXPECT_TRUE(model.forwardKinematics(bad).affine().array().isNaN().all());
-    EXPECT_TRUE(model.jacobian(bad).array().isNaN().all());
-    EXPECT_TRUE(model.gravity(bad).array().isNaN().all());
-    EXPECT_TRUE(model.massMatrix(bad).array().isNaN().all());
-    EXPECT_TRUE(model.coriolis(fine, bad).array().isNaN().all());
-    EXPECT_TRUE(model.inverseDynamics(bad, fine, fine).array().isNaN().all());
-    EXPECT_TRUE(model.inverseDynamics(fine, bad, fine).array().isNaN().all());
-    EXPECT_TRUE(model.inverseDynamics(fine, fine, bad).array().isNaN().all());
+    EXPECT_FALSE(model.forwardKinematics(bad, pose));
+    EXPECT_TRUE(pose.affine().array().isNaN().all());
+    EXPECT_FALSE(model.jacobian(bad, matrix));
+    EXPECT_TRUE(matrix.array().isNaN().all());
+    EXPECT_FALSE(model.massMatrix(bad, matrix));
+    EXPECT_TRUE(matrix.array().isNaN().all());
+    const auto expectNone = [&torque](bool found) {
+      EXPECT_FALSE(found);
+      ASSERT_EQ(torque.size(), 7);
+      EXPECT_TRUE(torque.array().isNaN().all());
+      torque.setZero();
+    };
+    expectNone(model.gravity(bad, torque));
+    expectNone(model.coriolis(fine, bad, torque));
+    expectNone(model.inverseDynamics(bad, fine, fine, torque));
+    expectNone(model.inverseDynamics(fine, bad, fine, torque));
+    expectNone(model.inverseDynamics(fine, fine, bad, torque));
+    expectNone(model.inverseDynamics(fine, fine, fine, {{poison, 0.0, 0.0}, {}}, torque));
+    expectNone(model.motorTorque(fine, fine, bad, torque));
+    expectNone(model.friction(bad, torque));
   }
-  EXPECT_TRUE(model.gravity(fine).allFinite()) << "a bad value leaves nothing behind";
+  EXPECT_FALSE(model.inverseDynamics(fine, 1e200 * fine, fine, torque)) << "finite in, overflow inside";
+  EXPECT_TRUE(torque.array().isNaN().all());
+  EXPECT_TRUE(model.gravity(fine, torque)) << "a bad value leaves nothing behind";
+  EXPECT_EQ(torque, model.gravity(fine));
 }
 
 TEST(RobotModelTest, AWrongSizeIsNamed) {
@@ -154,25 +200,10 @@ TEST(RobotModelTest, ResultsGoIntoTheCallersMemory) {
   EXPECT_EQ(torque, model.inverseDynamics(q, q, q));
 }
 
-/// KDL's chain remembers the last pose of each joint, so a shared one gives wrong results to threads.
-TEST(RobotModelTest, ModelsOfOneDescriptionServeThreadsIndependently) {
-  const RobotDescription description = describeOwnArm("demo_arm");
-  std::vector<int> wrong(3, 0);
-  std::vector<std::thread> threads;
-  for (unsigned thread = 0; thread < 3; ++thread) {
-    threads.emplace_back([&description, &wrong, thread] {
-      const RobotModel model(description);
-      RandomVectors random(10 + thread);
-      for (int state = 0; state < 3000; ++state) {
-        const Eigen::VectorXd q = random(7, 2.5);
-        const Eigen::Isometry3d first = model.forwardKinematics(q);
-        if (first.matrix() != model.forwardKinematics(q).matrix()) ++wrong[thread];
-        if (!first.linear().isUnitary(1e-12)) ++wrong[thread];
-      }
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(wrong, std::vector<int>(3, 0));
+TEST(RobotModelTest, AnArmNeedsAJoint) {
+  RobotDescription nothing;
+  nothing.name = "post";
+  EXPECT_EQ(errorOf([&] { RobotModel{nothing}; }), "robot 'post' has no joint to move");
 }
 
 TEST(RobotModelTest, CanBeMovedIntoItsPlace) {

@@ -10,14 +10,15 @@
 
 #include "demo_logger/robot/robot_model.h"
 #include "demo_logger/simulation/bullet_arm.h"
-#include "src/robot/body_inertia.h"
 #include "test/robot/own_arms.h"
+#include "test/robot/random_arm.h"
 #include "test/robot/real_arms.h"
 
 namespace demo_logger {
 namespace {
 
 constexpr double kTolerance = 1e-9;  // [m, N m], torques reach 120 N m
+constexpr int kStates = 2000;
 
 struct Disagreement {
   double pose = 0.0;     // [m], and elements of the rotation
@@ -62,45 +63,8 @@ void expectAgreement(const RobotDescription& description, int states, unsigned s
   EXPECT_LT(worst.torque, kTolerance) << name;
 }
 
-/// Frames, axes, types and bodies at random; every body is four point masses, so its inertia is possible.
-RobotDescription makeRandomArm(unsigned seed) {
-  std::mt19937 generator(seed);
-  const auto uniform = [&](double lower, double upper) {
-    return std::uniform_real_distribution<double>(lower, upper)(generator);
-  };
-  const auto vector = [&](double bound) {
-    return Eigen::Vector3d(uniform(-bound, bound), uniform(-bound, bound), uniform(-bound, bound));
-  };
-  const auto pose = [&] {
-    const Eigen::AngleAxisd turn(uniform(-3.0, 3.0), vector(1.0).normalized());
-    return Eigen::Isometry3d(Eigen::Translation3d(vector(0.5)) * turn);
-  };
-  RobotDescription arm;
-  arm.name = "random arm " + std::to_string(seed);
-  arm.has_inertia = true;
-  arm.gravity = 9.81 * vector(1.0).normalized();
-  arm.X_lastlink_tip = pose();
-  const int size = std::uniform_int_distribution<int>(1, 9)(generator);
-  for (int i = 0; i < size; ++i) {
-    ArmJoint joint;
-    joint.name = "joint_" + std::to_string(i + 1);
-    joint.link = "link_" + std::to_string(i + 1);
-    joint.type = uniform(0.0, 1.0) < 0.3 ? JointType::prismatic : JointType::revolute;
-    joint.X_parent_joint = pose();
-    joint.axis = vector(1.0).normalized();
-    for (int point = 0; point < 4; ++point) {
-      BodyInertia mass;
-      mass.mass = uniform(0.1, 2.0);
-      mass.center = vector(0.2);
-      joint.body = lumped(joint.body, mass);
-    }
-    arm.joints.push_back(joint);
-  }
-  return arm;
-}
-
 TEST(BulletAgainstKdlTest, AgreeOnThePackagesArms) {
-  for (const std::string name : {"demo_arm", "two_link"}) expectAgreement(describeOwnArm(name), 1000, 1, name);
+  for (const std::string name : {"demo_arm", "two_link"}) expectAgreement(describeOwnArm(name), kStates, 1, name);
 }
 
 TEST(BulletAgainstKdlTest, AgreeOnArmsAtRandomWithPrismaticJointsAndTiltedBases) {
@@ -113,7 +77,7 @@ TEST(BulletAgainstKdlTest, AgreeOnArmsThatPeopleOwn) {
   for (const RealArm& arm : realArms()) {
     const RobotDescription description = describeRealArm(arm);
     if (!description.has_inertia) continue;
-    expectAgreement(description, 500, 2, arm.file + " " + arm.tip);
+    expectAgreement(description, kStates, 2, arm.file + " " + arm.tip);
     ++compared;
   }
   EXPECT_EQ(compared, 11);

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,9 +32,11 @@ struct ArmJoint {
   double upper = std::numeric_limits<double>::infinity();
   double velocity_limit = std::numeric_limits<double>::infinity();  // [rad/s or m/s]
   double effort_limit = std::numeric_limits<double>::infinity();    // [N m or N]
-  double damping = 0.0;                                             // [N m s/rad or N s/m]
-  double friction = 0.0;                                            // [N m or N] Coulomb
+  double damping = 0.0;                                             // [N m s/rad or N s/m] viscous friction
+  double friction = 0.0;                                            // [N m or N] Coulomb friction
   BodyInertia body;
+  double friction_velocity = 0.0;  // [rad/s or m/s] v in Coulomb's friction · tanh(q̇ / v); 0: friction · sign(q̇)
+  double motor_inertia = 0.0;      // [kg m² or kg] of motor and gears, as the joint feels it; URDF has no place for it
 };
 
 /// One arm as one chain of moving joints, base to tip, made once from a URDF and used by KDL and by Bullet alike.
@@ -63,10 +66,26 @@ struct DescriptionOptions {
 /// Only what moves with the chain, or turns its base, is judged. Missing or impossible inertia is no error here: it
 /// waits in `inertia_fault` until dynamics are asked for, because kinematics work without.
 /// A velocity or effort limit of 0 means that none was stated.
+/// A mimic joint never moves by itself. In the chain, it is locked where its master beside the chain puts it; two
+/// joints of the chain coupled to each other are refused. Beside the chain, one that follows a joint of the arm is held
+/// where its master's 0 (or nearest limit) puts it, and what it carries waits in `inertia_fault`.
 RobotDescription describeRobot(const std::string& urdf_xml, const DescriptionOptions& options);
 
 /// As above from a file; FileError if it cannot be read. Messages name the file.
 RobotDescription describeRobotFile(const std::string& path, const DescriptionOptions& options);
+
+/// What moves one joint besides gravity and the bodies, as the joint feels it through its gears. What is absent stays
+/// as the description has it.
+struct JointDrive {
+  std::optional<double> motor_inertia;      // [kg m² or kg]
+  std::optional<double> damping;            // [N m s/rad or N s/m]
+  std::optional<double> friction;           // [N m or N]
+  std::optional<double> friction_velocity;  // [rad/s or m/s]
+};
+
+/// The same arm with other drives, by joint. Throws ModelError if a joint is not the arm's, or a value is negative or
+/// not finite.
+RobotDescription withDrives(const RobotDescription& description, const std::map<std::string, JointDrive>& drives);
 
 /// The same arm with a load held at the tip, its mass properties in the tip frame. Throws ModelError if the load is
 /// not physical (mass not positive, inertia against the triangle inequality).
