@@ -24,18 +24,28 @@ namespace {
 struct PlacedLink {
   urdf::LinkConstSharedPtr link;
   Eigen::Isometry3d X_body_link;
+  std::string not_rigid;  // why it does not truly move as one with the body; empty if it does
 };
+
+/// How a joint beside the chain moves after all; empty if it is truly locked.
+std::string whyNotRigid(const urdf::Joint& joint, const LockedJoints& locked) {
+  const std::string master = locked.armJointFollowedBy(joint);
+  if (master.empty()) return {};
+  return "joint '" + joint.name + "', which mimics joint '" + master + "' of the arm; lock '" + joint.name +
+         "' at a position to ignore that";
+}
 
 /// Everything that moves as one with `first`: itself and all below it, except what lies beyond `next_joint`.
 std::vector<PlacedLink> linksMovingWith(const urdf::LinkConstSharedPtr& first, const std::string& next_joint,
                                         const urdf::ModelInterface& model, const LockedJoints& locked) {
-  std::vector<PlacedLink> body{{first, Eigen::Isometry3d::Identity()}};
+  std::vector<PlacedLink> body{{first, Eigen::Isometry3d::Identity(), {}}};
   for (std::size_t i = 0; i < body.size(); ++i) {
     const PlacedLink placed = body[i];
     for (const auto& joint : placed.link->child_joints) {
       if (joint->name == next_joint) continue;
-      body.push_back(
-          {model.getLink(joint->child_link_name), placed.X_body_link * childInParent(*joint, locked.position(*joint))});
+      body.push_back({model.getLink(joint->child_link_name),
+                      placed.X_body_link * childInParent(*joint, locked.position(*joint)),
+                      placed.not_rigid.empty() ? whyNotRigid(*joint, locked) : placed.not_rigid});
     }
   }
   return body;
@@ -45,7 +55,7 @@ std::vector<PlacedLink> linksMovingWith(const urdf::LinkConstSharedPtr& first, c
 BodyInertia lumpedBody(const std::vector<PlacedLink>& links, const std::string& joint,
                        const std::map<std::string, std::string>& unread_inertia, std::string& fault) {
   BodyInertia body;
-  for (const auto& [link, X_body_link] : links) {
+  for (const auto& [link, X_body_link, not_rigid] : links) {
     const BodyInertia own = inertiaOf(*link);
     const std::string impossible = impossibility(own);
     if (own.mass < 0.0) throw ModelError("link '" + link->name + "' has " + impossible);
@@ -53,7 +63,13 @@ BodyInertia lumpedBody(const std::vector<PlacedLink>& links, const std::string& 
     if (const auto unread = unread_inertia.find(link->name); unread != unread_inertia.end() && fault.empty()) {
       fault = "link '" + link->name + "' has an <inertial> element that cannot be read: " + unread->second;
     }
+    if (own.mass != 0.0 && !not_rigid.empty() && fault.empty()) {
+      fault = "link '" + link->name + "' hangs from " + not_rigid;
+    }
     body = lumped(body, movedTo(X_body_link, own));
+  }
+  if (const std::string impossible = impossibility(body); !impossible.empty() && fault.empty()) {
+    fault = "all that joint '" + joint + "' moves up to the next joint has " + impossible;
   }
   if (body.mass == 0.0 && fault.empty()) {
     fault = "nothing that joint '" + joint + "' moves has mass up to the next joint; give link '" +
@@ -109,12 +125,14 @@ ArmJoint readArmJoint(const urdf::Joint& joint) {
   return arm_joint;
 }
 
-/// Rotation that turns root axes into base axes.
+/// Rotation that turns root axes into base axes; if it is not constant, `fault` says why.
 Eigen::Matrix3d rotationFromRootToBase(const urdf::ModelInterface& model, const urdf::LinkConstSharedPtr& base,
-                                       const LockedJoints& locked) {
+                                       const LockedJoints& locked, std::string& fault) {
   Eigen::Isometry3d X_root_base = Eigen::Isometry3d::Identity();
   for (const auto& joint : jointsBetween(model, model.getRoot(), base)) {
     X_root_base = X_root_base * childInParent(*joint, locked.position(*joint));
+    const std::string not_rigid = whyNotRigid(*joint, locked);
+    if (fault.empty() && !not_rigid.empty()) fault = "base '" + base->name + "' hangs from " + not_rigid;
   }
   return X_root_base.linear().transpose();
 }
@@ -125,25 +143,29 @@ RobotDescription describeTree(const ParsedUrdf& parsed, const DescriptionOptions
   const auto tip = options.tip.empty() ? onlyLeaf(model) : findLink(model, options.tip);
   const auto path = jointsBetween(model, base, tip);
 
+  for (const auto& joint : path) refuseUnusableJoint(*joint);
+  const LockedJoints locked(model, path, options.locked);
   std::vector<std::string> moving;
   for (const auto& joint : path) {
-    refuseUnusableJoint(*joint);
-    if (isMoving(*joint)) moving.push_back(joint->name);
+    if (locked.isArmJoint(*joint)) moving.push_back(joint->name);
   }
   if (moving.empty()) {
     throw ModelError("no moving joint between base '" + base->name + "' and tip '" + tip->name + "'");
   }
-  const LockedJoints locked(model, path, options.locked);
 
   RobotDescription description;
   description.name = model.getName();
   description.base = base->name;
   description.tip = tip->name;
-  description.gravity = rotationFromRootToBase(model, base, locked) * Eigen::Vector3d(0.0, 0.0, -options.gravity);
+  description.gravity = rotationFromRootToBase(model, base, locked, description.inertia_fault) *
+                        Eigen::Vector3d(0.0, 0.0, -options.gravity);
   Eigen::Isometry3d X_body_link = Eigen::Isometry3d::Identity();  // along the path, since the last moving joint
   for (const auto& joint : path) {
-    X_body_link = X_body_link * childInParent(*joint, 0.0);
-    if (!isMoving(*joint)) continue;
+    X_body_link = X_body_link * childInParent(*joint, locked.position(*joint));
+    if (!X_body_link.matrix().allFinite()) {
+      throw ModelError("joint '" + joint->name + "' lies too far away to be placed; look at its origin");
+    }
+    if (!locked.isArmJoint(*joint)) continue;
     ArmJoint arm_joint = readArmJoint(*joint);
     arm_joint.X_parent_joint = std::exchange(X_body_link, Eigen::Isometry3d::Identity());
     const std::size_t next = description.joints.size() + 1;

@@ -4,12 +4,15 @@
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <vector>
 
 #include "demo_logger/trajectory/error.h"
 #include "near_names.h"
+#include "xml_tags.h"
 
 namespace demo_logger {
 namespace {
@@ -82,28 +85,57 @@ void refuseWhatIsNoTree(const urdf::ModelInterface& model) {
   }
 }
 
-/// A xacro element outside comments: urdfdom would skip it, and with it half the robot, without a word.
-bool isXacro(const std::string& xml) {
-  const std::string begin = "<!--";
-  const std::string end = "-->";
-  std::size_t position = 0;
-  while (true) {
-    const std::size_t comment = xml.find(begin, position);
-    const std::size_t element = xml.find("<xacro:", position);
-    if (element < comment) return true;
-    if (comment == std::string::npos) return false;
-    position = xml.find(end, comment + begin.size());
-    if (position == std::string::npos) return false;
+/// Elements whose attributes make the robot: what a macro has left in them would be read as a name or a number.
+bool makesTheRobot(const std::string& element) {
+  static const std::set<std::string> elements = {
+      "robot", "link",    "joint",    "parent",           "child", "mimic", "origin", "axis", "limit",
+      "mass",  "inertia", "dynamics", "safety_controller"};
+  return elements.count(element) != 0;
+}
+
+/// What neither urdfdom nor its XML parser survives, and what they would take for something else.
+void refuseWhatIsNoUrdf(const std::string& xml) {
+  constexpr int kDeepest = 100;     // the XML parser calls itself for each level
+  constexpr int kMostLinks = 5000;  // as urdfdom does for each link when it frees a chain of them
+  int depth = 0, links = 0;
+  XmlTags tags(xml);
+  while (const std::optional<XmlTag> tag = tags.next()) {
+    if (tag->kind == XmlTag::Kind::closing) {
+      depth = std::max(depth - 1, 0);
+      continue;
+    }
+    if (tag->kind == XmlTag::Kind::opening && ++depth > kDeepest) {
+      throw ModelError("not a valid URDF: elements are nested more than " + std::to_string(kDeepest) + " deep, at <" +
+                       tag->name + ">");
+    }
+    if (tag->name == "link" && ++links > kMostLinks) {
+      throw ModelError("the URDF has more than " + std::to_string(kMostLinks) + " links, expected one robot");
+    }
+    if (tag->name.compare(0, 6, "xacro:") == 0) {
+      throw ModelError("this is a xacro file, not a URDF; expand it first: xacro FILE > robot.urdf");
+    }
+    const bool macro =
+        tag->attributes.find("${") != std::string::npos || tag->attributes.find("$(") != std::string::npos;
+    if (macro && makesTheRobot(tag->name)) {
+      throw ModelError("the URDF still holds a macro, <" + tag->name + tag->attributes +
+                       ">; expand the xacro file that it comes from: xacro FILE > robot.urdf");
+    }
   }
+}
+
+/// Links own their children. Before they are freed each must let go of its own: a loop of them would own itself for
+/// ever, and a long chain would be freed by as many calls within calls.
+urdf::ModelInterfaceSharedPtr freedLinkByLink(const urdf::ModelInterfaceSharedPtr& model) {
+  return {model.get(), [model](urdf::ModelInterface* dying) {
+            for (const auto& [name, link] : dying->links_) link->child_links.clear();
+          }};
 }
 
 }  // namespace
 
 ParsedUrdf parseUrdf(const std::string& xml) {
   if (xml.find_first_not_of(" \t\r\n") == std::string::npos) throw ModelError("the URDF text is empty");
-  if (isXacro(xml)) {
-    throw ModelError("this is a xacro file, not a URDF; expand it first: xacro FILE > robot.urdf");
-  }
+  refuseWhatIsNoUrdf(xml);
   ParsedUrdf parsed;
   {
     const CaughtConsole console;
@@ -114,15 +146,10 @@ ParsedUrdf parseUrdf(const std::string& xml) {
       thrown = error.what();
     }
     if (!parsed.model) throw ModelError("not a valid URDF: " + (thrown.empty() ? console.summary() : thrown));
+    parsed.model = freedLinkByLink(parsed.model);
     parsed.unread_inertia = console.unreadInertia();
   }
-  try {
-    refuseWhatIsNoTree(*parsed.model);
-  } catch (const ModelError&) {
-    // Links own their children: a loop of them would own itself for ever.
-    for (const auto& [name, link] : parsed.model->links_) link->child_links.clear();
-    throw;
-  }
+  refuseWhatIsNoTree(*parsed.model);
   return parsed;
 }
 

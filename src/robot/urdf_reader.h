@@ -14,7 +14,8 @@ struct ParsedUrdf {
 };
 
 /// Parses URDF text with urdfdom, whose console messages are caught and become part of the error. Throws ModelError:
-/// empty text, an unexpanded xacro file, malformed XML, anything urdfdom refuses, links that hang in a loop.
+/// empty text, a xacro file or what is left of its macros, malformed XML, elements nested too deeply, more links than a
+/// robot has, anything urdfdom refuses, links that hang in a loop.
 ParsedUrdf parseUrdf(const std::string& xml);
 
 }  // namespace demo_logger

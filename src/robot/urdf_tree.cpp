@@ -24,7 +24,8 @@ bool isMoving(const urdf::Joint& joint) {
          joint.type == urdf::Joint::PRISMATIC;
 }
 
-Eigen::Vector3d unitAxis(const urdf::Joint& joint) { return toEigen(joint.axis).normalized(); }
+/// The squares of a long or short axis may overflow or vanish.
+Eigen::Vector3d unitAxis(const urdf::Joint& joint) { return toEigen(joint.axis).stableNormalized(); }
 
 Eigen::Isometry3d childInParent(const urdf::Joint& joint, double position) {
   Eigen::Isometry3d origin = toEigen(joint.parent_to_joint_origin_transform);
@@ -54,7 +55,7 @@ void refuseUnusableJoint(const urdf::Joint& joint) {
                      "; an arm and what hangs from it may have revolute, continuous, prismatic and fixed joints only");
   }
   if (!isMoving(joint)) return;
-  if (toEigen(joint.axis).norm() == 0.0) {
+  if (toEigen(joint.axis).isZero(0.0)) {
     throw ModelError("joint '" + joint.name + "' has the axis 0 0 0, expected a direction such as 0 0 1");
   }
   if (joint.limits && joint.type != urdf::Joint::CONTINUOUS && joint.limits->lower > joint.limits->upper) {

@@ -83,6 +83,51 @@ TEST(RobotDescriptionTest, AMimicJointFollowsItsMasterByMultiplierAndOffset) {
   EXPECT_TRUE(moved.isApprox(Eigen::Vector3d(0.8 / 4.0, (-2.0 * 0.8 + 0.4) / 4.0, 0.0), 1e-15)) << moved.transpose();
 }
 
+TEST(RobotDescriptionTest, MimicsOfMimicsFollowTheFirstMaster) {
+  const std::string urdf = robot(
+      link("base", 9) + link("hand", 2) + link("a", 1) + link("b", 1) + link("c", 1) +
+      joint("lift", "revolute", "base", "hand", "<axis xyz='0 0 1'/>" + kLimit) +
+      joint("ja", "prismatic", "hand", "a", "<axis xyz='1 0 0'/>" + kLimit + "<mimic joint='jb' multiplier='3'/>") +
+      joint("jb", "prismatic", "hand", "b",
+            "<axis xyz='0 1 0'/>" + kLimit + "<mimic joint='jc' multiplier='2' offset='0.1'/>") +
+      joint("jc", "prismatic", "hand", "c", "<axis xyz='0 0 1'/>" + kLimit));
+  const Eigen::Vector3d center = describeHand(urdf, {{"jc", 0.5}}).joints[0].body.center;
+  EXPECT_TRUE(center.isApprox(Eigen::Vector3d(3.0 * (2.0 * 0.5 + 0.1), 2.0 * 0.5 + 0.1, 0.5) / 5.0, 1e-15));
+  const Eigen::Vector3d own_place = describeHand(urdf, {{"jc", 0.5}, {"jb", 0.2}}).joints[0].body.center;
+  EXPECT_TRUE(own_place.isApprox(Eigen::Vector3d(3.0 * 0.2, 0.2, 0.5) / 5.0, 1e-15)) << "a given place wins";
+}
+
+/// base -lift- hand, and on the hand two fingers of which the second mimics the first.
+std::string handWithTwoFingers() {
+  return robot(link("base", 9) + link("hand", 2) + link("left", 1) + link("right", 1) +
+               joint("lift", "revolute", "base", "hand", "<axis xyz='0 0 1'/>" + kLimit) +
+               joint("slide", "prismatic", "hand", "left", "<axis xyz='1 0 0'/>" + kLimit) +
+               joint("follow", "prismatic", "hand", "right",
+                     "<axis xyz='0 1 0'/>" + kLimit + "<mimic joint='slide' multiplier='-2' offset='0.4'/>"));
+}
+
+TEST(RobotDescriptionTest, AMimicJointInTheChainIsLockedWhereItsMasterBesideIs) {
+  DescriptionOptions options;
+  options.tip = "right";
+  options.locked = {{"slide", 0.8}};
+  const RobotDescription arm = describeRobot(handWithTwoFingers(), options);
+  EXPECT_EQ(arm.jointNames(), std::vector<std::string>{"lift"}) << "one that follows never moves by itself";
+  EXPECT_TRUE(arm.X_lastlink_tip.translation().isApprox(Eigen::Vector3d(0.0, -2.0 * 0.8 + 0.4, 0.0), 1e-15));
+  options.locked = {{"follow", 0.3}};
+  EXPECT_TRUE(describeRobot(handWithTwoFingers(), options)
+                  .X_lastlink_tip.translation()
+                  .isApprox(Eigen::Vector3d(0.0, 0.3, 0.0), 1e-15));
+}
+
+TEST(RobotDescriptionTest, AMimicJointBesideTheChainIsHeldWhereItsMasterIsAtZero) {
+  DescriptionOptions options;
+  options.tip = "left";
+  const RobotDescription arm = describeRobot(handWithTwoFingers(), options);
+  EXPECT_EQ(arm.jointNames(), (std::vector<std::string>{"lift", "slide"}));
+  EXPECT_NEAR(arm.joints[0].body.center.y(), 0.4 / 3.0, 1e-15) << "1 of 3 kg at the offset";
+  EXPECT_FALSE(arm.has_inertia) << "it moves with the arm";
+}
+
 TEST(RobotDescriptionTest, MergesFixedJointsInsideTheChainAndPastTheTip) {
   const std::string urdf =
       robot(link("base", 9) + link("a", 2) + link("flange", 1) + link("b", 4) + link("tool", 3) + link("past", 5) +

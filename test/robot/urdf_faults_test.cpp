@@ -170,18 +170,22 @@ TEST(UrdfFaultsTest, MimicsThatCannotBeFollowed) {
   };
   EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("ghost")), "base", "hand"),
             "robot description: joint 'grip' mimics joint 'ghost', which does not exist");
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("ghost")), "base", "finger"),
+            "robot description: joint 'grip' mimics joint 'ghost', which does not exist");
   EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("grip")), "base", "hand"),
             "robot description: joint 'grip' mimics itself by way of other joints");
-  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("j1")), "base", "hand"),
-            "robot description: joint 'grip' beside the chain mimics joint 'j1' of the arm, so what hangs from it "
-            "cannot be lumped; lock it at a position to ignore that");
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("grip")), "base", "finger"),
+            "robot description: joint 'grip' mimics itself by way of other joints");
+  const std::string circle =
+      "<link name='a'/><link name='b'/>"
+      "<joint name='ja' type='revolute'><parent link='hand'/><child link='a'/>" +
+      kLimit + "<mimic joint='jb'/></joint><joint name='jb' type='revolute'><parent link='hand'/><child link='b'/>" +
+      kLimit + "<mimic joint='ja'/></joint>";
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", circle), "base", "hand"),
+            "robot description: joint 'ja' mimics itself by way of other joints");
   EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("j1")), "base", "finger"),
-            "robot description: joint 'grip' mimics joint 'j1' and lies in the chain; every joint of an arm must move "
-            "by itself");
-  DescriptionOptions locked;
-  locked.tip = "hand";
-  locked.locked = {{"grip", 0.2}};
-  EXPECT_NO_THROW(describeRobot(simpleArm("revolute", kLimit, "", side("j1")), locked));
+            "robot description: joint 'grip' mimics joint 'j1', and both lie in the chain; every joint of an arm must "
+            "move by itself: choose a base or tip with only one of them between, or lock 'grip' at a position");
 }
 
 TEST(UrdfFaultsTest, LinksThatAreNoTree) {
@@ -230,6 +234,98 @@ TEST(UrdfFaultsTest, InertiaThatCannotBeReadIsNoMasslessLink) {
   EXPECT_EQ(dynamicsFaultOf("<mass value='1'/>"), where + "Inertial element must have inertia element");
   EXPECT_EQ(dynamicsFaultOf(kInertia), where + "Inertial element must have a mass element");
   EXPECT_EQ(dynamicsFaultOf("<mass value='1'/>" + kInertia), "no error");
+}
+
+TEST(UrdfFaultsTest, AMassThatFollowsTheArmCannotBeLumped) {
+  const auto grip = [](const std::string& in_finger) {
+    return simpleArm("revolute", kLimit, "<inertial><mass value='1'/>" + kInertia + "</inertial>",
+                     "<link name='finger'>" + in_finger +
+                         "</link><joint name='grip' type='revolute'><parent link='hand'/><child link='finger'/>" +
+                         kLimit + "<mimic joint='j1'/></joint>");
+  };
+  const std::string heavy = "<inertial><mass value='0.1'/>" + kInertia + "</inertial>";
+  DescriptionOptions to_hand;
+  to_hand.tip = "hand";
+  EXPECT_EQ(describeRobot(grip(heavy), to_hand).inertia_fault,
+            "robot description: link 'finger' hangs from joint 'grip', which mimics joint 'j1' of the arm; lock 'grip' "
+            "at a position to ignore that");
+  EXPECT_EQ(describeRobot(grip(""), to_hand).inertia_fault, "") << "what weighs nothing may move as it likes";
+  to_hand.locked = {{"grip", 0.2}};
+  EXPECT_DOUBLE_EQ(describeRobot(grip(heavy), to_hand).joints[0].body.mass, 1.1);
+}
+
+TEST(UrdfFaultsTest, ABaseThatFollowsTheArmHasNoConstantGravity) {
+  const std::string urdf =
+      "<robot name='r'><link name='world'/><link name='base'/><link name='hand'><inertial><mass value='1'/>" +
+      kInertia + "</inertial></link><joint name='lean' type='revolute'><parent link='world'/><child link='base'/>" +
+      kLimit + "<mimic joint='j1'/></joint><joint name='j1' type='revolute'><parent link='base'/><child link='hand'/>" +
+      kLimit + "</joint></robot>";
+  DescriptionOptions options;
+  options.base = "base";
+  EXPECT_EQ(
+      describeRobot(urdf, options).inertia_fault,
+      "robot description: base 'base' hangs from joint 'lean', which mimics joint 'j1' of the arm; lock 'lean' at "
+      "a position to ignore that");
+}
+
+TEST(UrdfFaultsTest, OriginsThatAreNone) {
+  const auto originFault = [](const std::string& xyz) {
+    return faultOf(simpleArm("revolute", kLimit + "<origin xyz='" + xyz + "'/>"));
+  };
+  const auto sentence = [](const std::string& component) {
+    return "robot description: not a valid URDF: Unable to parse component [" + component +
+           "] to a double (while parsing a vector value); Malformed parent origin element for joint [j1]";
+  };
+  EXPECT_EQ(originFault("0,5 0 0"), sentence("0,5"));
+  EXPECT_EQ(originFault("nan 0 0"), sentence("nan"));
+  EXPECT_EQ(originFault("0 inf 0"), sentence("inf"));
+  EXPECT_EQ(originFault("0 0 1e999"), sentence("1e999"));
+  EXPECT_EQ(originFault("0 0"),
+            "robot description: not a valid URDF: Parser found 2 elements but 3 expected while parsing vector [0 0]; "
+            "Malformed parent origin element for joint [j1]");
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit + "<axis xyz='0 0 nan'/>")),
+            "robot description: not a valid URDF: Malformed axis element for joint [j1]: Unable to parse component "
+            "[nan] to a double (while parsing a vector value)");
+}
+
+TEST(UrdfFaultsTest, APlaceTooFarAway) {
+  const std::string far = "<origin xyz='1e308 1e308 0' rpy='0 0 0.7'/>";
+  const std::string urdf =
+      "<robot name='r'><link name='base'/><link name='a'/><link name='hand'/><joint name='f' type='fixed'><parent "
+      "link='base'/><child link='a'/>" +
+      far + "</joint><joint name='j1' type='revolute'><parent link='a'/><child link='hand'/>" + kLimit + far +
+      "</joint></robot>";
+  EXPECT_EQ(faultOf(urdf), "robot description: joint 'j1' lies too far away to be placed; look at its origin");
+}
+
+TEST(UrdfFaultsTest, NamesThatAppearTwice) {
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", "<link name='hand'/>")),
+            "robot description: not a valid URDF: link 'hand' is not unique.");
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "",
+                              "<link name='x'/><joint name='j1' type='fixed'><parent link='hand'/><child "
+                              "link='x'/></joint>")),
+            "robot description: not a valid URDF: joint 'j1' is not unique.");
+}
+
+TEST(UrdfFaultsTest, WhatAMacroLeftBehind) {
+  const std::string advice = ">; expand the xacro file that it comes from: xacro FILE > robot.urdf";
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit + "<origin xyz='${length} 0 0'/>")),
+            "robot description: the URDF still holds a macro, <origin xyz='${length} 0 0'" + advice);
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", "<link name=\"$(arg prefix)tool\"/>")),
+            "robot description: the URDF still holds a macro, <link name=\"$(arg prefix)tool\"" + advice);
+  EXPECT_EQ(faultOf(simpleArm("revolute", kLimit,
+                              "<visual><geometry><mesh filename='file://$(find arm)/hand.stl'/></geometry></visual>",
+                              "<gazebo><plugin name='p'><topic>${ns}</topic></plugin></gazebo><!-- ${old} <xacro:x/> "
+                              "-->")),
+            "no error")
+      << "what neither moves nor weighs may hold anything";
+}
+
+TEST(UrdfFaultsTest, AxesOfAnyLengthAreDirections) {
+  for (const std::string length : {"1e-200", "3", "1e200"}) {
+    const RobotDescription arm = describeRobot(simpleArm("revolute", kLimit + "<axis xyz='0 -" + length + " 0'/>"), {});
+    EXPECT_TRUE(arm.joints[0].axis.isApprox(-Eigen::Vector3d::UnitY())) << length;
+  }
 }
 
 TEST(UrdfFaultsTest, NothingIsPrintedToTheConsole) {
