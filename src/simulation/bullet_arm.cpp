@@ -5,9 +5,8 @@
 #include <sstream>
 #include <string>
 
+#include "arm_dynamics.h"
 #include "bullet_body.h"
-#include "bullet_world.h"
-#include "damping_law.h"
 #include "demo_logger/trajectory/error.h"
 
 namespace demo_logger {
@@ -28,21 +27,18 @@ double nearestToZero(const ArmJoint& joint) { return std::clamp(0.0, joint.lower
 class BulletArm::Implementation {
  public:
   explicit Implementation(const RobotDescription& given)
-      : description(requireInertia(given)), damping(given), size(static_cast<int>(given.joints.size())) {
+      : description(requireInertia(given)), size(static_cast<int>(given.joints.size())), dynamics(description) {
     Eigen::VectorXd q(size);
     for (int i = 0; i < size; ++i) q[i] = nearestToZero(description.joints[static_cast<std::size_t>(i)]);
     reset({q, Eigen::VectorXd::Zero(size)});
   }
 
-  /// A new world rather than a cleaned one: nothing that Bullet remembers can leak into what comes.
   void reset(const ArmState& given) {
     check("q", given.q);
     check("dq", given.dq);
     checkLimits(given.q);
     state = given;
     friction = Eigen::VectorXd::Zero(size);
-    world = std::make_unique<BulletWorld>(description);
-    world->place(state);
   }
 
   void check(const char* what, const Eigen::VectorXd& values) const {
@@ -73,12 +69,10 @@ class BulletArm::Implementation {
   }
 
   RobotDescription description;
-  DampingLaw damping;
   int size;
+  ArmDynamics dynamics;
   ArmState state;
   Eigen::VectorXd friction;
-  Eigen::VectorXd total_torque;
-  std::unique_ptr<BulletWorld> world;
 };
 
 BulletArm::BulletArm(const RobotDescription& description)
@@ -97,29 +91,19 @@ void BulletArm::step(const Eigen::VectorXd& torque, double duration, int substep
                      " s in " + std::to_string(substeps) + " parts, expected a positive time and at least one part");
   }
   const double step = duration / substeps;
-  own.damping.update(own.state.q, step);
   own.friction.setZero();
-  for (int substep = 0; substep < substeps; ++substep) {
-    own.total_torque = torque;
-    own.damping.addTo(own.total_torque, own.state.dq);
-    own.friction += own.total_torque - torque;
-    own.world->step(own.total_torque, step);
-    own.world->read(own.state);
-    for (int i = 0; i < own.size; ++i) own.friction[i] += own.world->frictionImpulse(i) / step;
-  }
-  own.friction /= substeps;
+  for (int substep = 0; substep < substeps; ++substep) own.dynamics.step(own.state, torque, step, own.friction);
+  own.friction /= duration;
 }
 
 const Eigen::VectorXd& BulletArm::frictionTorque() const { return implementation_->friction; }
 
-Eigen::Isometry3d BulletArm::tipPose() const { return implementation_->world->tipPose(); }
+Eigen::Isometry3d BulletArm::tipPose() const { return implementation_->dynamics.tipPose(implementation_->state.q); }
 
 Eigen::VectorXd BulletArm::acceleration(const Eigen::VectorXd& torque) const {
-  const Implementation& own = *implementation_;
+  Implementation& own = *implementation_;
   own.check("torque", torque);
-  Eigen::VectorXd result(own.size);
-  own.world->acceleration(torque, result);
-  return result;
+  return own.dynamics.acceleration(own.state, torque);
 }
 
 }  // namespace demo_logger

@@ -1,7 +1,5 @@
 #include "joint_constraints.h"
 
-#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -17,40 +15,36 @@ double approachSpeed(double room, double step) {
 
 }  // namespace
 
-JointConstraints::JointConstraints(btMultiBody& body, int index, const ArmJoint& joint)
-    : body_(body),
-      index_(index),
-      coulomb_friction_(joint.friction),
-      lower_(joint.lower),
-      upper_(joint.upper),
-      friction_(body, index),
-      stop_(body, index) {}
+JointConstraints::JointConstraints(const std::vector<ArmJoint>& joints) {
+  for (const ArmJoint& joint : joints) joints_.push_back({joint.friction, joint.lower, joint.upper, -1});
+}
 
-void JointConstraints::prepare(double step) {
+void JointConstraints::addTo(ConstraintProblem& problem, const ArmState& state, double step) {
   constexpr double kStrongest = 1e9;            // [N m s or N s]
   constexpr double kHighestAcceleration = 1e5;  // [rad/s² or m/s²]: nothing within reach of a step is overlooked
-  if (coulomb_friction_ > 0.0) friction_.activate(0.0, -coulomb_friction_ * step, coulomb_friction_ * step);
-
-  const double reach = 2.0 * std::abs(body_.getJointVel(index_)) * step + kHighestAcceleration * step * step;
-  const double below = body_.getJointPos(index_) - lower_;
-  const double above = upper_ - body_.getJointPos(index_);
-  if (below < reach && below <= above) {
-    stop_.activate(-approachSpeed(below, step), 0.0, kStrongest);
-  } else if (above < reach) {
-    stop_.activate(approachSpeed(above, step), -kStrongest, 0.0);
-  } else {
-    stop_.deactivate();
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    Joint& joint = joints_[i];
+    const auto j = static_cast<int>(i);
+    joint.friction_row = -1;
+    if (joint.friction > 0.0) {
+      joint.friction_row = problem.addJoint(j, 0.0, -joint.friction * step, joint.friction * step);
+    }
+    const double reach = 2.0 * std::abs(state.dq[j]) * step + kHighestAcceleration * step * step;
+    const double below = state.q[j] - joint.lower;
+    const double above = joint.upper - state.q[j];
+    if (below < reach && below <= above) {
+      problem.addJoint(j, -approachSpeed(below, step), 0.0, kStrongest);
+    } else if (above < reach) {
+      problem.addJoint(j, approachSpeed(above, step), -kStrongest, 0.0);
+    }
   }
 }
 
-void JointConstraints::addTo(btMultiBodyDynamicsWorld& world) {
-  world.addMultiBodyConstraint(&friction_);
-  world.addMultiBodyConstraint(&stop_);
-}
-
-void JointConstraints::removeFrom(btMultiBodyDynamicsWorld& world) {
-  world.removeMultiBodyConstraint(&friction_);
-  world.removeMultiBodyConstraint(&stop_);
+void JointConstraints::addFrictionImpulse(const ConstraintProblem& problem, Eigen::VectorXd& impulse) const {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (joints_[i].friction_row < 0) continue;
+    impulse[static_cast<Eigen::Index>(i)] += problem.impulse(joints_[i].friction_row);
+  }
 }
 
 }  // namespace demo_logger

@@ -1,36 +1,35 @@
 #pragma once
 
-#include "demo_logger/robot/robot_description.h"
-#include "joint_row.h"
+#include <Eigen/Core>
+#include <vector>
 
-class btMultiBodyDynamicsWorld;
+#include "constraint_problem.h"
+#include "demo_logger/robot/robot_description.h"
+#include "demo_logger/simulation/bullet_arm.h"
 
 namespace demo_logger {
 
-/// What holds one joint besides torque: Coulomb friction, which wants it to stand still and is as strong as the
-/// friction, and the stop at either end of its range. A stop lets the joint come just to its limit within a step, so
+/// What holds the joints besides torque: Coulomb friction, which wants a joint to stand still and is as strong as the
+/// friction, and the stops at either end of its range. A stop lets the joint come just to its limit within a step, so
 /// the joint neither sinks in nor bounces off.
 class JointConstraints {
  public:
-  JointConstraints(btMultiBody& body, int index, const ArmJoint& joint);
+  explicit JointConstraints(const std::vector<ArmJoint>& joints);
 
-  /// For the step to come, of length `step` [s].
-  void prepare(double step);
+  /// Adds the rows for a step of length `step` [s] from `state`.
+  void addTo(ConstraintProblem& problem, const ArmState& state, double step);
 
-  /// Impulse [N m s or N s] of friction in the last step.
-  double frictionImpulse() { return friction_.impulse(); }
-
-  void addTo(btMultiBodyDynamicsWorld& world);
-  void removeFrom(btMultiBodyDynamicsWorld& world);
+  /// Adds the impulse [N m s or N s] of friction in the step that `problem` was solved for.
+  void addFrictionImpulse(const ConstraintProblem& problem, Eigen::VectorXd& impulse) const;
 
  private:
-  const btMultiBody& body_;
-  int index_;
-  double coulomb_friction_;
-  double lower_;
-  double upper_;
-  JointRow friction_;
-  JointRow stop_;
+  struct Joint {
+    double friction;
+    double lower;
+    double upper;
+    int friction_row;
+  };
+  std::vector<Joint> joints_;
 };
 
 }  // namespace demo_logger

@@ -17,7 +17,8 @@ struct ArmState {
 ///   M(q) q̈ + C(q, q̇) q̇ + g(q) = τ − D q̇ − friction + limits
 /// Joint limits stop the arm dead; Coulomb friction holds it (stiction); viscous damping D brakes it, stable however
 /// large.
-/// The links touch neither each other nor a floor. Deterministic: same description, same calls, same bits.
+/// Each step solves friction and stops of all joints at once and exactly. The links touch neither each other nor a
+/// floor. Deterministic: same description, same calls, same bits.
 class BulletArm {
  public:
   /// Starts at rest at 0 or the nearest limit. Throws ModelError if the description has no inertia, or if a joint moves
@@ -30,7 +31,7 @@ class BulletArm {
   void reset(const ArmState& state);
   const ArmState& state() const;
 
-  /// One control period with `torque` [N m or N] held, in `substeps` equal steps of Bullet's semi-implicit Euler.
+  /// One control period with `torque` [N m or N] held, in `substeps` equal steps of semi-implicit Euler.
   /// `torque` is clamped to nothing here: limits are the controller's. Throws ModelError on a torque that is not
   /// finite or of the wrong size, before anything moves; `duration` [s] must be positive, `substeps` at least 1.
   void step(const Eigen::VectorXd& torque, double duration, int substeps);
