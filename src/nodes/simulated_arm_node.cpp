@@ -1,7 +1,5 @@
 #include "src/nodes/simulated_arm_node.h"
 
-#include <geometry_msgs/Twist.h>
-#include <geometry_msgs/TwistStamped.h>
 #include <rosgraph_msgs/Clock.h>
 
 #include <chrono>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "src/nodes/arm_commands.h"
 
 namespace demo_logger {
 namespace {
@@ -35,16 +34,6 @@ void sleepUntil(Nanoseconds steady) {
 
 std::vector<double> toVector(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
 
-Eigen::VectorXd toEigen(const geometry_msgs::Twist& twist) {
-  Eigen::VectorXd values(6);
-  values << twist.linear.x, twist.linear.y, twist.linear.z, twist.angular.x, twist.angular.y, twist.angular.z;
-  return values;
-}
-
-std::string withoutSlash(const std::string& frame) {  // as some publishers of ROS's first years still put it
-  return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
-}
-
 }  // namespace
 
 SimulatedArmNode::SimulatedArmNode(ros::NodeHandle node, ros::NodeHandle private_node,
@@ -59,11 +48,15 @@ SimulatedArmNode::SimulatedArmNode(ros::NodeHandle node, ros::NodeHandle private
   subscribers_.push_back(node.subscribe<topic_tools::ShapeShifter>(
       "teleop_cmd", kQueue,
       boost::function<void(const TwistEvent&)>([this](const TwistEvent& e) { receiveTwist(e); })));
-  for (const ControlMode mode : {ControlMode::effort, ControlMode::velocity}) {
-    subscribers_.push_back(node.subscribe<std_msgs::Float64MultiArray>(
-        "joint_group_" + toString(mode) + "_controller/command", kQueue,
-        boost::function<void(const JointEvent&)>([this, mode](const JointEvent& e) { receiveJoints(mode, e); })));
+  for (const ControlMode mode : {ControlMode::effort, ControlMode::velocity, ControlMode::position}) {
+    subscribe<std_msgs::Float64MultiArray>(
+        node, "joint_group_" + toString(mode) + "_controller/command",
+        [mode](const std_msgs::Float64MultiArray& message) { return toArmCommand(mode, message); });
   }
+  subscribe<sensor_msgs::JointState>(node, "joint_target",
+                                     [](const sensor_msgs::JointState& message) { return toArmCommand(message); });
+  subscribe<trajectory_msgs::JointTrajectory>(
+      node, "joint_trajectory", [](const trajectory_msgs::JointTrajectory& message) { return toArmCommand(message); });
 
   services_.push_back(private_node.advertiseService("set_control_mode", &SimulatedArmNode::setControlMode, this));
   services_.push_back(private_node.advertiseService("reset_simulation", &SimulatedArmNode::reset, this));
@@ -81,37 +74,32 @@ SimulatedArmNode::SimulatedArmNode(ros::NodeHandle node, ros::NodeHandle private
                                             [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
 }
 
+template <typename Message>
+void SimulatedArmNode::subscribe(ros::NodeHandle& node, const std::string& topic,
+                                 std::function<ArmCommand(const Message&)> convert) {
+  using Event = ros::MessageEvent<Message const>;
+  subscribers_.push_back(node.subscribe<Message>(
+      topic, kQueue, boost::function<void(const Event&)>([this, convert = std::move(convert)](const Event& event) {
+        put(convert(*event.getMessage()), event.getPublisherName());
+      })));
+}
+
 void SimulatedArmNode::receiveTwist(const TwistEvent& event) {
   const topic_tools::ShapeShifter& message = *event.getMessage();
-  ArmCommand command;
-  command.mode = ControlMode::cartesian_velocity;
-  command.source = event.getPublisherName();
   if (message.getDataType() == "geometry_msgs/TwistStamped") {
-    const auto twist = message.instantiate<geometry_msgs::TwistStamped>();
-    command.values = toEigen(twist->twist);
-    command.frame = withoutSlash(twist->header.frame_id);
-    command.stamp = static_cast<Nanoseconds>(twist->header.stamp.toNSec());
+    put(toArmCommand(*message.instantiate<geometry_msgs::TwistStamped>()), event.getPublisherName());
   } else if (message.getDataType() == "geometry_msgs/Twist") {
-    command.values = toEigen(*message.instantiate<geometry_msgs::Twist>());
+    put(toArmCommand(*message.instantiate<geometry_msgs::Twist>()), event.getPublisherName());
   } else {
-    ROS_ERROR_STREAM_THROTTLE(kRefusalLogPeriod, command.source << " sends " << message.getDataType()
-                                                                << " as teleop_cmd, expected geometry_msgs/Twist or "
-                                                                   "geometry_msgs/TwistStamped.");
-    return;
+    ROS_ERROR_STREAM_THROTTLE(kRefusalLogPeriod, event.getPublisherName()
+                                                     << " sends " << message.getDataType()
+                                                     << " as teleop_cmd, expected geometry_msgs/Twist or "
+                                                        "geometry_msgs/TwistStamped.");
   }
-  put(std::move(command));
 }
 
-void SimulatedArmNode::receiveJoints(ControlMode mode, const JointEvent& event) {
-  const std::vector<double>& data = event.getMessage()->data;
-  ArmCommand command;
-  command.mode = mode;
-  command.values = Eigen::Map<const Eigen::VectorXd>(data.data(), static_cast<Eigen::Index>(data.size()));
-  command.source = event.getPublisherName();
-  put(std::move(command));
-}
-
-void SimulatedArmNode::put(ArmCommand command) {
+void SimulatedArmNode::put(ArmCommand command, const std::string& source) {
+  command.source = source;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (inbox_.commands.size() >= kInbox) {
     inbox_.commands.erase(inbox_.commands.begin());

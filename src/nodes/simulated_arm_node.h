@@ -5,12 +5,12 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
-#include <std_msgs/Float64MultiArray.h>
 #include <std_srvs/Empty.h>
 #include <std_srvs/Trigger.h>
 #include <topic_tools/shape_shifter.h>
 
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -24,7 +24,8 @@ namespace demo_logger {
 
 /// Wires a SimulatedArm to ROS: commands and services come in on one thread, and wait for the next control tick, which
 /// the thread in run() makes in real time.
-///   subscribes  teleop_cmd (Twist or TwistStamped), joint_group_{effort,velocity}_controller/command
+///   subscribes  teleop_cmd (Twist or TwistStamped), joint_group_{effort,velocity,position}_controller/command,
+///               joint_target, joint_trajectory
 ///   publishes   joint_states, applied_command, ground_truth/joint_states, /clock when asked, /diagnostics
 ///   services    ~set_control_mode, ~reset_simulation, ~pause_physics, ~unpause_physics
 class SimulatedArmNode {
@@ -36,7 +37,6 @@ class SimulatedArmNode {
 
  private:
   using TwistEvent = ros::MessageEvent<topic_tools::ShapeShifter const>;
-  using JointEvent = ros::MessageEvent<std_msgs::Float64MultiArray const>;
 
   /// What came in between two ticks.
   struct Inbox {
@@ -59,9 +59,10 @@ class SimulatedArmNode {
     std::vector<std::string> clock_mismatches;
   };
 
+  template <typename Message>
+  void subscribe(ros::NodeHandle& node, const std::string& topic, std::function<ArmCommand(const Message&)> convert);
   void receiveTwist(const TwistEvent& event);
-  void receiveJoints(ControlMode mode, const JointEvent& event);
-  void put(ArmCommand command);
+  void put(ArmCommand command, const std::string& source);
   bool setControlMode(SetControlMode::Request& request, SetControlMode::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool setPaused(bool paused);

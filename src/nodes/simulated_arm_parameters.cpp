@@ -59,8 +59,7 @@ SimulatedArmParameters readSimulatedArmParameters(const ros::NodeHandle& private
   chain.tip = parameters.text("tip", "");
 
   SimulatedArmConfiguration& arm = result.arm;
-  arm.mode = toControlMode(
-      parameters.choice("control_mode", "cartesian_velocity", {"effort", "velocity", "cartesian_velocity"}));
+  arm.mode = toControlMode(parameters.choice("control_mode", "cartesian_velocity", controlModeNames()));
   arm.initial_position = parameters.numbers("initial_position", {});
   arm.substeps = parameters.integer("substeps", arm.substeps, {1.0, 100.0, ""});
   arm.sensors = readSensors(parameters.group("sensors"));
@@ -76,6 +75,10 @@ SimulatedArmParameters readSimulatedArmParameters(const ros::NodeHandle& private
       parameters.number("max_acceleration", controller.max_acceleration, {0.01, 1000.0, "rad/s2 or m/s2"});
   controller.velocity_gain =
       parameters.number("velocity_gain", controller.velocity_gain, {1.0, control_rate / 2.0, "1/s"});
+  controller.position_gain =
+      parameters.number("position_gain", controller.position_gain, {0.1, controller.velocity_gain / 2.0, "1/s"});
+  controller.effort_gravity_compensation =
+      parameters.flag("effort_gravity_compensation", controller.effort_gravity_compensation);
   controller.position_margin = parameters.number("position_margin", controller.position_margin, {0.0, 0.5, "rad or m"});
   parameters.rejectUnknown();
 

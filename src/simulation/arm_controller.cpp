@@ -1,12 +1,15 @@
 #include "demo_logger/simulation/arm_controller.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "demo_logger/simulation/command_gate.h"
 #include "demo_logger/trajectory/error.h"
+#include "effort_guard.h"
+#include "joint_servo.h"
+#include "path_follower.h"
 #include "print.h"
 #include "reasons.h"
 #include "twist_resolution.h"
@@ -37,9 +40,25 @@ void validate(const ArmControllerConfiguration& c) {
           "rad/s2 or m/s2", "above 0, at most 1000");
   require(c.velocity_gain > 0.0 && c.velocity_gain * c.control_period <= 0.5, "velocity_gain", c.velocity_gain, "1/s",
           "above 0, at most half the control rate, beyond which the loop would ring");
+  require(c.position_gain > 0.0 && c.position_gain <= 0.5 * c.velocity_gain, "position_gain", c.position_gain, "1/s",
+          "above 0, at most half the velocity_gain, beyond which the arm would overshoot");
   require(c.position_margin >= 0.0 && c.position_margin <= 0.5, "position_margin", c.position_margin, "rad or m",
           "from 0 to 0.5");
 }
+
+namespace {
+
+/// The velocity [rad/s or m/s] that takes back `error` [rad or m]: in proportion when it is small, and so that the arm
+/// can brake in time when it is not. It leaves a part of the deceleration in hand.
+double approachVelocity(double error, const ArmControllerConfiguration& configuration) {
+  constexpr double kShareOfDeceleration = 0.7;
+  const double most = kShareOfDeceleration * configuration.max_acceleration;
+  const double step = most * configuration.control_period;
+  const double in_time = std::sqrt(step * step + 2.0 * most * std::abs(error)) - step;
+  return std::copysign(std::min(configuration.position_gain * std::abs(error), in_time), error);
+}
+
+}  // namespace
 
 class ArmController::Implementation {
  public:
@@ -49,34 +68,33 @@ class ArmController::Implementation {
         model_(std::move(description)),
         gate_({model_.description().jointNames(), model_.description().base, model_.description().tip,
                configuration.command_timeout}),
-        reference_(model_.description().joints, configuration) {}
+        follower_(model_.description().joints, configuration.max_acceleration),
+        reference_(model_.description().joints, configuration),
+        servo_(model_, configuration),
+        guard_(model_, servo_, configuration) {}
 
   AppliedControl tick(Nanoseconds now, const ArmState& state, const std::vector<ArmCommand>& commands) {
     Reasons reasons;
+    const bool sound = state.q.allFinite() && state.dq.allFinite();
     for (const ArmCommand& command : commands) {
-      const std::string refusal = gate_.admit(command, mode_, now);
+      const std::string refusal = admit(command, now, state);
       if (refusal.empty()) continue;
       ++refused_;
-      reasons.add("refused: " + refusal);
+      reasons.add("refused" + (command.source.empty() ? "" : " from " + command.source) + ": " + refusal);
     }
+    follower_.advance(now);
     const ArmCommand* command = gate_.inForce(now);
     if (command == nullptr) reasons.add(gate_.whyNone());
 
     AppliedControl applied;
     applied.mode = mode_;
     applied.names = mode_ == ControlMode::cartesian_velocity ? twistNames() : model_.description().jointNames();
-    if (!state.q.allFinite() || !state.dq.allFinite()) {
+    if (!sound) {
       reasons.add("the state of the arm is not finite; motors off");
       applied.command = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(applied.names.size()));
       applied.torque = Eigen::VectorXd::Zero(model_.size());
-    } else if (mode_ == ControlMode::effort && command != nullptr) {
-      applied.torque = guardEffort(command->values, state, reasons);
-      applied.command = applied.torque;
-    } else if (mode_ == ControlMode::cartesian_velocity) {
-      applied.command = followTwist(command, state, applied.torque, reasons);
     } else {
-      followVelocity(mode_ == ControlMode::velocity ? command : nullptr, state, applied.torque, reasons);
-      applied.command = mode_ == ControlMode::velocity ? reference_.velocity() : applied.torque;
+      control(now, command, state, applied, reasons);
     }
     applied.reason = reasons.text();
     return applied;
@@ -84,11 +102,13 @@ class ArmController::Implementation {
 
   void setMode(ControlMode mode) {
     mode_ = mode;
+    follower_.clear();
     gate_.clear("no command yet since mode " + toString(mode) + " was chosen");
   }
 
   void reset() {
     reference_.follow(Eigen::VectorXd::Zero(model_.size()));
+    follower_.clear();
     gate_.reset();
   }
 
@@ -100,26 +120,131 @@ class ArmController::Implementation {
  private:
   const std::vector<ArmJoint>& joints() const { return model_.description().joints; }
 
-  void followVelocity(const ArmCommand* command, const ArmState& state, Eigen::VectorXd& torque, Reasons& reasons) {
-    const Eigen::VectorXd target = command != nullptr ? command->values : Eigen::VectorXd::Zero(model_.size());
-    reference_.step(target, state, /*keep_direction=*/command == nullptr, reasons);
-    torque = limitTorque(trackingTorque(state), reasons);
+  /// A path must begin where the arm is meant to be, which a gate cannot know.
+  std::string admit(const ArmCommand& command, Nanoseconds now, const ArmState& state) {
+    if (mode_ != ControlMode::trajectory || command.mode != mode_) return gate_.admit(command, mode_, now);
+    CommandGate trial = gate_;
+    std::string refusal = trial.admit(command, mode_, now);
+    if (!refusal.empty()) return refusal;
+    const std::vector<PathPoint>& path = trial.inForce(now)->path;
+    const Nanoseconds start = command.stamp == 0 ? now : command.stamp;
+    const PathPoint present{0.0, state.q, reference_.velocity(), reference_.acceleration()};
+    refusal = follower_.take(path, start, now, follower_.at(std::max(start, now)).value_or(present));
+    if (!refusal.empty()) return refusal;
+    if (path.empty()) trial.clear("stopped by an empty path");
+    gate_ = std::move(trial);
+    return "";
   }
 
-  /// Returns the twist in force in base axes.
-  Eigen::VectorXd followTwist(const ArmCommand* command, const ArmState& state, Eigen::VectorXd& torque,
-                              Reasons& reasons) {
+  void control(Nanoseconds now, const ArmCommand* command, const ArmState& state, AppliedControl& applied,
+               Reasons& reasons) {
+    switch (mode_) {
+      case ControlMode::effort:
+        if (command != nullptr) return applyEffort(command->values, state, applied, reasons);
+        brake(state, applied, reasons);
+        applied.command = applied.torque;
+        return;
+      case ControlMode::velocity:
+        if (command == nullptr) return brake(state, applied, reasons);
+        return followVelocity(command->values, state, applied, reasons);
+      case ControlMode::cartesian_velocity:
+        return followTwist(command, state, applied, reasons);
+      case ControlMode::position:
+        if (command == nullptr) return stay(state, applied, reasons);
+        return followPosition(targetOf(*command, now), state, applied, reasons);
+      case ControlMode::trajectory:
+        return followPath(now, state, applied, reasons);
+    }
+  }
+
+  void applyEffort(const Eigen::VectorXd& asked, const ArmState& state, AppliedControl& applied, Reasons& reasons) {
+    reference_.follow(state.dq);
+    Eigen::VectorXd compensation = Eigen::VectorXd::Zero(model_.size());
+    if (configuration_.effort_gravity_compensation) compensation = model_.gravity(state.q);
+    const Eigen::VectorXd torque = asked + compensation;
+    applied.torque = guard_.guarded(torque, state, reasons);
+    applied.command = applied.torque == torque ? asked : Eigen::VectorXd(applied.torque - compensation);
+  }
+
+  void brake(const ArmState& state, AppliedControl& applied, Reasons& reasons) {
+    moveAt(Eigen::VectorXd::Zero(model_.size()), /*keep_direction=*/true, state, applied, reasons);
+    applied.command = reference_.velocity();
+  }
+
+  void followVelocity(const Eigen::VectorXd& velocity, const ArmState& state, AppliedControl& applied,
+                      Reasons& reasons) {
+    moveAt(velocity, /*keep_direction=*/false, state, applied, reasons);
+    applied.command = reference_.velocity();
+  }
+
+  /// Without a position to go to.
+  void stay(const ArmState& state, AppliedControl& applied, Reasons& reasons) {
+    brake(state, applied, reasons);
+    applied.command = state.q;
+  }
+
+  void moveAt(const Eigen::VectorXd& velocity, bool keep_direction, const ArmState& state, AppliedControl& applied,
+              Reasons& reasons) {
+    reference_.step(velocity, state, keep_direction, reasons);
+    applied.torque = servo_.limited(servo_.trackingTorque(reference_, state, kUsualFrictionRise), reasons);
+  }
+
+  /// A target that moves goes on moving as it said until it says something else.
+  PathPoint targetOf(const ArmCommand& command, Nanoseconds now) const {
+    PathPoint target{0.0, command.values, Eigen::VectorXd::Zero(model_.size()), {}};
+    if (command.rates.size() == 0) return target;
+    target.dq = command.rates;
+    target.q += toSeconds(now - gate_.receipt()) * command.rates;
+    return target;
+  }
+
+  void followPosition(PathPoint target, const ArmState& state, AppliedControl& applied, Reasons& reasons) {
+    constexpr double kFrictionRise = 0.002;  // [rad/s or m/s]
+    Eigen::VectorXd velocity = target.dq;
+    for (std::size_t i = 0; i < joints().size(); ++i) {
+      const auto j = static_cast<Eigen::Index>(i);
+      const double asked = target.q[j];
+      target.q[j] = std::clamp(asked, joints()[i].lower, joints()[i].upper);
+      if (target.q[j] != asked) {
+        velocity[j] = 0.0;
+        reasons.add("position of " + joints()[i].name + " limited to " + printPosition(joints()[i], target.q[j]));
+      }
+      velocity[j] += approachVelocity(target.q[j] - state.q[j], configuration_);
+    }
+    Reasons shape;  // getting there takes time, in which limits shape the motion: no intervention
+    reference_.step(velocity, state, /*keep_direction=*/false, shape);
+    applied.torque = servo_.limited(servo_.trackingTorque(reference_, state, kFrictionRise), reasons);
+    applied.command = target.q;
+  }
+
+  void followPath(Nanoseconds now, const ArmState& state, AppliedControl& applied, Reasons& reasons) {
+    constexpr double kFarthestBehind = 0.5;  // [rad or m]
+    std::optional<PathPoint> point = follower_.at(now);
+    if (!point) return stay(state, applied, reasons);
+    point->dq = follower_.at(now + fromSeconds(configuration_.control_period))->dq;  // to be reached in this tick
+    for (std::size_t i = 0; i < joints().size(); ++i) {
+      const auto j = static_cast<Eigen::Index>(i);
+      const double error = std::abs(point->q[j] - state.q[j]);
+      if (error <= kFarthestBehind) continue;
+      follower_.clear();
+      gate_.clear("stopped: " + joints()[i].name + " was " + printPosition(joints()[i], error) + " off its path");
+      reasons.add(gate_.whyNone());
+      return stay(state, applied, reasons);
+    }
+    followPosition(*point, state, applied, reasons);
+  }
+
+  void followTwist(const ArmCommand* command, const ArmState& state, AppliedControl& applied, Reasons& reasons) {
     const Eigen::MatrixXd jacobian = model_.jacobian(state.q);
     Eigen::VectorXd twist = Eigen::VectorXd::Zero(6);
     if (command != nullptr) twist = inBaseAxes(*command, state);
     const ResolvedTwist resolved = resolveTwist(jacobian, twist);
     Reasons limits;
     if (resolved.damped) limits.add("near a singularity: the tip falls short of the twist, the joints stay slow");
-    reference_.step(resolved.velocity, state, /*keep_direction=*/true, limits);
-    torque = limitTorque(trackingTorque(state), limits);
+    moveAt(resolved.velocity, /*keep_direction=*/true, state, applied, limits);
     const bool as_asked = limits.empty();
     reasons.addAll(limits);
-    return as_asked ? twist : jacobian * reference_.velocity();
+    applied.command = as_asked ? twist : Eigen::VectorXd(jacobian * reference_.velocity());
   }
 
   Eigen::VectorXd inBaseAxes(const ArmCommand& command, const ArmState& state) const {
@@ -131,93 +256,14 @@ class ArmController::Implementation {
     return twist;
   }
 
-  /// τ = M (v̇_ref + k (v_ref − q̇)) + h + friction(v_ref), the correction within the acceleration limit.
-  Eigen::VectorXd trackingTorque(const ArmState& state) const {
-    const double most = configuration_.max_acceleration;
-    const Eigen::VectorXd correction =
-        (configuration_.velocity_gain * (reference_.velocity() - state.dq)).cwiseMax(-most).cwiseMin(most);
-    return model_.inverseDynamics(state.q, state.dq, reference_.acceleration() + correction) +
-           friction(reference_.velocity());
-  }
-
-  /// Of the joints at this velocity. Coulomb friction rises over a small velocity instead of at once: at rest the arm's
-  /// own stiction shall hold it, not a motor that chatters.
-  Eigen::VectorXd friction(const Eigen::VectorXd& velocity) const {
-    constexpr double kRise = 0.01;  // [rad/s or m/s]
-    Eigen::VectorXd torque(velocity.size());
-    for (std::size_t i = 0; i < joints().size(); ++i) {
-      const double v = velocity[static_cast<Eigen::Index>(i)];
-      torque[static_cast<Eigen::Index>(i)] = joints()[i].damping * v + joints()[i].friction * std::tanh(v / kRise);
-    }
-    return torque;
-  }
-
-  /// Lets a torque through unless a joint would leave its velocity range within about 1/(2k); then all joints get the
-  /// torque for the nearest acceleration that does not.
-  Eigen::VectorXd guardEffort(const Eigen::VectorXd& asked, const ArmState& state, Reasons& reasons) {
-    reference_.follow(state.dq);
-    Eigen::VectorXd torque = limitTorque(asked, reasons);
-    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model_.size());
-    const Eigen::VectorXd bias = model_.inverseDynamics(state.q, state.dq, rest) + friction(state.dq);
-    const Eigen::VectorXd predicted = model_.massMatrix(state.q).llt().solve(torque - bias);
-    Eigen::VectorXd allowed = predicted;
-    const double most = configuration_.max_acceleration;
-    // This law sees one tick ahead and knows no stiction: it is stiff, and keeps half the deceleration and a part of
-    // the velocity in hand.
-    constexpr double kShareOfVelocity = 0.95;
-    const double gain = 2.0 * configuration_.velocity_gain;
-    const BrakingRule rule{most / 2.0, configuration_.control_period, configuration_.position_margin};
-    for (std::size_t i = 0; i < joints().size(); ++i) {
-      const auto j = static_cast<Eigen::Index>(i);
-      const VelocityRange range = velocityRange(joints()[i], state.q[j], rule);
-      const double fastest = gain * (kShareOfVelocity * range.upper - state.dq[j]);
-      const double slowest = gain * (kShareOfVelocity * range.lower - state.dq[j]);
-      allowed[j] = std::clamp(predicted[j], slowest, fastest);
-      if (allowed[j] == predicted[j]) continue;
-      const bool by_position = predicted[j] > fastest ? range.upper_by_position : range.lower_by_position;
-      reasons.add(joints()[i].name +
-                  (by_position ? " braked before its position limit" : " braked at its velocity limit"));
-    }
-    if (allowed == predicted) return torque;
-    // Once it interferes, no joint shall be so quick that the others' forces change within the tick.
-    const double quickest = 10.0 * most;
-    return feasibleTorque(allowed.cwiseMax(-quickest).cwiseMin(quickest), state);
-  }
-
-  /// The torque for `acceleration`, or where a motor is too weak for it, for something between it and braking all
-  /// joints: clamping that motor alone would let the others push it over its limit.
-  Eigen::VectorXd feasibleTorque(const Eigen::VectorXd& acceleration, const ArmState& state) const {
-    const double most = configuration_.max_acceleration;
-    const Eigen::VectorXd braking = (-configuration_.velocity_gain * state.dq).cwiseMax(-most).cwiseMin(most);
-    const Eigen::VectorXd resisting = friction(state.dq);
-    Eigen::VectorXd torque = model_.inverseDynamics(state.q, state.dq, braking) + resisting;
-    const Eigen::VectorXd more = model_.inverseDynamics(state.q, state.dq, acceleration) + resisting - torque;
-    double share = 1.0;
-    for (Eigen::Index i = 0; i < torque.size(); ++i) {
-      const double room = joints()[static_cast<std::size_t>(i)].effort_limit - std::copysign(1.0, more[i]) * torque[i];
-      if (std::abs(more[i]) > room) share = std::min(share, std::max(room, 0.0) / std::abs(more[i]));
-    }
-    torque += share * more;
-    Reasons known;
-    return limitTorque(torque, known);
-  }
-
-  Eigen::VectorXd limitTorque(Eigen::VectorXd torque, Reasons& reasons) const {
-    for (std::size_t i = 0; i < joints().size(); ++i) {
-      double& effort = torque[static_cast<Eigen::Index>(i)];
-      const double limit = joints()[i].effort_limit;
-      if (std::abs(effort) <= limit) continue;
-      effort = std::copysign(limit, effort);
-      reasons.add("effort of " + joints()[i].name + " limited to " + printEffort(joints()[i], limit));
-    }
-    return torque;
-  }
-
   ArmControllerConfiguration configuration_;
   ControlMode mode_;
   RobotModel model_;
   CommandGate gate_;
+  PathFollower follower_;
   VelocityReference reference_;
+  JointServo servo_;
+  EffortGuard guard_;
   std::uint64_t refused_ = 0;
 };
 

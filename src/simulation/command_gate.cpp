@@ -11,7 +11,8 @@
 namespace demo_logger {
 namespace {
 
-constexpr double kLargestValue = 1e6;     // no arm moves or pushes like that; keeps the arithmetic finite
+constexpr double kLargestValue = 1e6;  // no arm moves or pushes like that; keeps the arithmetic finite
+constexpr std::size_t kMostPoints = 10000;
 constexpr std::size_t kMostSources = 16;  // publishers whose clocks are remembered
 const char* const kTwistComponents = "vx vy vz wx wy wz";
 
@@ -19,8 +20,19 @@ const std::vector<std::pair<ControlMode, std::string>>& modeNames() {
   static const std::vector<std::pair<ControlMode, std::string>> names{
       {ControlMode::effort, "effort"},
       {ControlMode::velocity, "velocity"},
+      {ControlMode::position, "position"},
+      {ControlMode::trajectory, "trajectory"},
       {ControlMode::cartesian_velocity, "cartesian_velocity"}};
   return names;
+}
+
+std::string checkNumbers(const Eigen::VectorXd& values) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const std::string component = "component " + std::to_string(i) + " of the command is ";
+    if (!std::isfinite(values[i])) return component + "not a number";
+    if (std::abs(values[i]) > kLargestValue) return component + print(values[i]) + ", beyond what any arm does";
+  }
+  return "";
 }
 
 std::string printDuration(Nanoseconds duration) { return print(toSeconds(duration)) + " s"; }
@@ -32,6 +44,12 @@ std::string toString(ControlMode mode) {
     if (value == mode) return name;
   }
   return "unknown";
+}
+
+std::vector<std::string> controlModeNames() {
+  std::vector<std::string> names;
+  for (const auto& mode : modeNames()) names.push_back(mode.second);
+  return names;
 }
 
 ControlMode toControlMode(const std::string& name) {
@@ -51,7 +69,7 @@ std::string CommandGate::admit(const ArmCommand& command, ControlMode mode, Nano
   }
   ArmCommand sorted = command;
   std::string refusal = checkValues(command, sorted);
-  if (refusal.empty()) refusal = checkStamp(command, now);
+  if (refusal.empty()) refusal = mode == ControlMode::trajectory ? checkStart(command, now) : checkStamp(command, now);
   if (!refusal.empty()) return refusal;
   command_ = std::move(sorted);
   receipt_ = now;
@@ -59,39 +77,90 @@ std::string CommandGate::admit(const ArmCommand& command, ControlMode mode, Nano
 }
 
 std::string CommandGate::checkValues(const ArmCommand& command, ArmCommand& sorted) const {
-  const bool is_twist = command.mode == ControlMode::cartesian_velocity;
-  const std::size_t expected = is_twist ? 6 : configuration_.joints.size();
-  const auto size = static_cast<std::size_t>(command.values.size());
-  const std::size_t names = command.names.size();
-  if (size != expected || (names != 0 && names != size)) {
-    return "a " + toString(command.mode) + " command has " + std::to_string(size) + " values" +
-           (names != 0 ? " for " + std::to_string(names) + " names" : "") + ", expected " +
-           (is_twist ? kTwistComponents : std::to_string(expected) + ", one for each joint");
+  if (command.mode == ControlMode::cartesian_velocity) return checkTwist(command);
+  const std::string what = "a " + toString(command.mode) + " command";
+  std::string refusal;
+  if (command.mode != ControlMode::trajectory) refusal = checkSize(what, command.values, command.names.size());
+  std::vector<Eigen::Index> order;
+  if (refusal.empty() && !command.names.empty()) refusal = checkNames(command.names, order);
+  if (!refusal.empty()) return refusal;
+  sorted.names.clear();
+  if (command.mode != ControlMode::trajectory) {
+    refusal = sort(what, order, sorted.values);
+    if (!refusal.empty() || command.rates.size() == 0) return refusal;
+    return sort("the velocity of " + what, order, sorted.rates);
   }
-  if (is_twist && !command.frame.empty() && command.frame != configuration_.base &&
-      command.frame != configuration_.tip) {
+  if (command.path.size() > kMostPoints) {
+    return "a path has " + std::to_string(command.path.size()) + " points, expected at most " +
+           std::to_string(kMostPoints);
+  }
+  for (std::size_t i = 0; i < sorted.path.size(); ++i) {
+    PathPoint& point = sorted.path[i];
+    const std::string where = "point " + std::to_string(i + 1) + " of a path";
+    refusal = sort(where, order, point.q);
+    if (refusal.empty() && point.dq.size() > 0) refusal = sort("the velocity at " + where, order, point.dq);
+    if (refusal.empty() && point.ddq.size() > 0) refusal = sort("the acceleration at " + where, order, point.ddq);
+    if (!refusal.empty()) return refusal;
+  }
+  return "";
+}
+
+std::string CommandGate::checkTwist(const ArmCommand& command) const {
+  if (command.values.size() != 6 || (!command.names.empty() && command.names.size() != 6)) {
+    return "a cartesian_velocity command has " + std::to_string(command.values.size()) + " values, expected " +
+           kTwistComponents;
+  }
+  if (!command.frame.empty() && command.frame != configuration_.base && command.frame != configuration_.tip) {
     return "a twist is given in the frame \"" + command.frame + "\", expected \"" + configuration_.base + "\" or \"" +
            configuration_.tip + "\"";
   }
-  for (Eigen::Index i = 0; i < command.values.size(); ++i) {
-    const double value = command.values[i];
-    if (!std::isfinite(value)) return "component " + std::to_string(i) + " of the command is not a number";
-    if (std::abs(value) > kLargestValue) {
-      return "component " + std::to_string(i) + " of the command is " + print(value) + ", beyond what any arm does";
+  return checkNumbers(command.values);
+}
+
+/// Fills `order`: where each named value belongs in the arm.
+std::string CommandGate::checkNames(const std::vector<std::string>& names, std::vector<Eigen::Index>& order) const {
+  const std::vector<std::string>& joints = configuration_.joints;
+  for (const std::string& name : names) {
+    const auto joint = std::find(joints.begin(), joints.end(), name);
+    if (joint == joints.end()) return "the command names \"" + name + "\", no joint of this arm";
+    const Eigen::Index place = joint - joints.begin();
+    if (std::find(order.begin(), order.end(), place) != order.end()) {
+      return "the command names \"" + name + "\" twice";
     }
+    order.push_back(place);
   }
-  if (is_twist) return "";
-  for (std::size_t i = 0; i < names; ++i) {
-    const auto joint = std::find(configuration_.joints.begin(), configuration_.joints.end(), command.names[i]);
-    if (joint == configuration_.joints.end())
-      return "the command names \"" + command.names[i] + "\", no joint of this arm";
-    if (std::count(command.names.begin(), command.names.end(), command.names[i]) > 1) {
-      return "the command names \"" + command.names[i] + "\" twice";
-    }
-    sorted.values[joint - configuration_.joints.begin()] = command.values[static_cast<Eigen::Index>(i)];
-  }
-  sorted.names.clear();
+  if (names.size() == joints.size()) return "";
+  return "the command names " + std::to_string(names.size()) + " joints, expected all " + std::to_string(joints.size());
+}
+
+std::string CommandGate::checkSize(const std::string& what, const Eigen::VectorXd& values, std::size_t names) const {
+  const std::size_t expected = configuration_.joints.size();
+  const auto size = static_cast<std::size_t>(values.size());
+  if (size == expected && (names == 0 || names == size)) return "";
+  return what + " has " + std::to_string(size) + " values" +
+         (names == 0 ? "" : " for " + std::to_string(names) + " names") + ", expected " + std::to_string(expected) +
+         ", one for each joint";
+}
+
+/// Brings `values` into the arm's order, if they are sound.
+std::string CommandGate::sort(const std::string& what, const std::vector<Eigen::Index>& order,
+                              Eigen::VectorXd& values) const {
+  std::string refusal = checkSize(what, values, order.size());
+  if (refusal.empty()) refusal = checkNumbers(values);
+  if (!refusal.empty() || order.empty()) return refusal;
+  const Eigen::VectorXd given = values;
+  for (std::size_t i = 0; i < order.size(); ++i) values[order[i]] = given[static_cast<Eigen::Index>(i)];
   return "";
+}
+
+/// A start that lies in the past is no fault as long as the path has not ended; its follower judges that.
+std::string CommandGate::checkStart(const ArmCommand& command, Nanoseconds now) {
+  constexpr double kLongestWait = 60.0;  // [s]
+  if (command.stamp == 0) return "";
+  const double wait = toSeconds(command.stamp - now);
+  if (wait <= kLongestWait) return "";
+  return "a path would start in " + print(wait) + " s, expected within " + print(kLongestWait) +
+         " s; do the clocks differ?";
 }
 
 std::string CommandGate::checkStamp(const ArmCommand& command, Nanoseconds now) {
@@ -115,6 +184,7 @@ std::string CommandGate::checkStamp(const ArmCommand& command, Nanoseconds now) 
 
 const ArmCommand* CommandGate::inForce(Nanoseconds now) {
   if (!command_) return nullptr;
+  if (command_->mode == ControlMode::trajectory) return &*command_;  // has a duration of its own
   const Nanoseconds timeout = fromSeconds(configuration_.timeout);
   if (now - receipt_ > timeout) {
     clear("no command for " + print(configuration_.timeout) + " s");

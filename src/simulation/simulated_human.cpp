@@ -127,7 +127,7 @@ class SimulatedHuman::Implementation {
   Eigen::VectorXd wishedInputs(double time) const {
     const double task_time = time - motion_start_;
     const Eigen::Isometry3d& seen = seen_.front();
-    const PathPoint meant = path_->at(task_time - human_.reaction_delay);
+    const ToolPoint meant = path_->at(task_time - human_.reaction_delay);
     Twist twist = path_->at(task_time).twist;
     twist.head<3>() += kVisualGain * (meant.pose.translation() - seen.translation());
     twist.tail<3>() += kVisualGain * rotationVector(meant.pose.linear() * seen.linear().transpose());

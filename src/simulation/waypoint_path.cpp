@@ -21,7 +21,7 @@ WaypointPath::WaypointPath(const Eigen::Isometry3d& start, const std::vector<Way
   }
 }
 
-PathPoint WaypointPath::at(double time) const {
+ToolPoint WaypointPath::at(double time) const {
   if (time <= 0.0) return {poses_.front(), Eigen::Matrix<double, 6, 1>::Zero()};
   std::size_t segment = 0;
   while (segment < durations_.size() && time >= durations_[segment]) time -= durations_[segment++];
@@ -37,7 +37,7 @@ PathPoint WaypointPath::at(double time) const {
   const Eigen::Vector3d turn = rotationVector(to.linear() * from.linear().transpose());
   const double angle = turn.norm();
 
-  PathPoint point;
+  ToolPoint point;
   point.pose.translation() = from.translation() + s * shift;
   point.pose.linear() = from.linear();
   if (angle > 0.0) point.pose.linear() = Eigen::AngleAxisd(s * angle, turn / angle) * from.linear();

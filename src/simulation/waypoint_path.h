@@ -7,7 +7,7 @@
 
 namespace demo_logger {
 
-struct PathPoint {
+struct ToolPoint {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   Eigen::Matrix<double, 6, 1> twist = Eigen::Matrix<double, 6, 1>::Zero();  // v of the origin, then ω, base axes
 };
@@ -21,7 +21,7 @@ class WaypointPath {
 
   double duration() const { return duration_; }
   /// At rest in the first pose before time 0, and in the last one after the end.
-  PathPoint at(double time) const;
+  ToolPoint at(double time) const;
 
  private:
   std::vector<Eigen::Isometry3d> poses_;

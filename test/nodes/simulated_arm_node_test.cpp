@@ -10,6 +10,7 @@
 #include <std_srvs/Empty.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_msgs/TFMessage.h>
+#include <trajectory_msgs/JointTrajectory.h>
 
 #include <cmath>
 #include <set>
@@ -20,6 +21,9 @@ namespace demo_logger {
 namespace {
 
 const std::vector<double> kInitialPosition{0.0, 0.3, 0.0, 1.4, 0.0, 1.44, 0.0};  // config/simulated_arm.yaml
+
+/// How the arm refuses what this test sends.
+std::string refusal(const std::string& why) { return "refused from " + ros::this_node::getName() + ": " + why; }
 
 /// The arm of launch/simulated_arm.launch, brought back to its start before each test.
 class SimulatedArmNodeTest : public testing::Test {
@@ -178,7 +182,7 @@ TEST_F(SimulatedArmNodeTest, AStaleStampIsRefusedWithItsAge) {
   EXPECT_TRUE(send(
       publisher, makeStamped(0.05),
       [](const AppliedCommand& tick) {
-        return tick.reason.rfind("refused: the stamp of a command is 3", 0) == 0 && tick.command[1] == 0.0;
+        return tick.reason.rfind(refusal("the stamp of a command is 3"), 0) == 0 && tick.command[1] == 0.0;
       },
       ros::Duration(3.0)))
       << applied.last().reason;
@@ -225,27 +229,81 @@ TEST_F(SimulatedArmNodeTest, InModeVelocityJointCommandsMoveItAndTwistsAreRefuse
 
   ros::Publisher twists = advertise<geometry_msgs::TwistStamped>("teleop_cmd");
   EXPECT_TRUE(send(twists, makeStamped(0.05), [](const AppliedCommand& tick) {
-    return tick.reason.rfind("refused: a command for mode cartesian_velocity came while mode velocity is in force",
+    return tick.reason.rfind(refusal("a command for mode cartesian_velocity came while mode velocity is in force"),
                              0) == 0;
   })) << applied.last().reason;
 }
 
-TEST_F(SimulatedArmNodeTest, InModeEffortTheTorqueIsTheCommand) {
+TEST_F(SimulatedArmNodeTest, InModeEffortCommandsComeOnTopOfGravity) {
   ASSERT_TRUE(joint_states.wait());
   std_msgs::Float64MultiArray command;
-  command.data = joint_states.last().effort;  // what holds it against gravity
+  command.data = std::vector<double>(7, 0.0);
   ros::Publisher joints = advertise<std_msgs::Float64MultiArray>("joint_group_effort_controller/command");
   EXPECT_TRUE(setMode("effort").success);
   EXPECT_TRUE(send(joints, command, [&](const AppliedCommand& tick) {
-    return tick.mode == "effort" && tick.torque == command.data && tick.reason.empty();
+    return tick.mode == "effort" && tick.command == command.data && tick.torque[1] < -20.0 && tick.reason.empty();
   })) << applied.last().reason;
+}
+
+TEST_F(SimulatedArmNodeTest, InModePositionItGoesToItsTarget) {
+  ros::Publisher targets = advertise<sensor_msgs::JointState>("joint_target");
+  EXPECT_TRUE(setMode("position").success);
+  sensor_msgs::JointState target;
+  target.name = {"joint_7", "joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6"};
+  target.position = {-0.2, 0.1, 0.3, 0.0, 1.4, 0.0, 1.44};
+  const std::vector<double> expected{0.1, 0.3, 0.0, 1.4, 0.0, 1.44, -0.2};
+  EXPECT_TRUE(send(targets, target, [&](const AppliedCommand& tick) {
+    return tick.mode == "position" && tick.command == expected && tick.reason.empty() &&
+           !joint_states.messages().empty() && std::abs(joint_states.last().position[6] + 0.2) < 2e-3 &&
+           std::abs(joint_states.last().position[0] - 0.1) < 2e-3;
+  })) << applied.last().reason;
+
+  target.name[0] = "joint_8";
+  EXPECT_TRUE(send(targets, target, [&](const AppliedCommand& tick) {
+    return tick.reason == refusal("the command names \"joint_8\", no joint of this arm");
+  })) << applied.last().reason;
+}
+
+TEST_F(SimulatedArmNodeTest, InModePositionAnArrayIsATargetToo) {
+  ros::Publisher joints = advertise<std_msgs::Float64MultiArray>("joint_group_position_controller/command");
+  EXPECT_TRUE(setMode("position").success);
+  std_msgs::Float64MultiArray command;
+  command.data = {0.0, 0.3, 0.05, 1.4, 0.0, 1.44, 0.0};
+  EXPECT_TRUE(send(joints, command, [&](const AppliedCommand& tick) {
+    return tick.command == command.data && tick.reason.empty() && !joint_states.messages().empty() &&
+           std::abs(joint_states.last().position[2] - 0.05) < 2e-3;
+  })) << applied.last().reason;
+}
+
+TEST_F(SimulatedArmNodeTest, InModeTrajectoryAPathIsFollowedToItsEndAndHeld) {
+  ros::Publisher paths = advertise<trajectory_msgs::JointTrajectory>("joint_trajectory");
+  EXPECT_TRUE(setMode("trajectory").success);
+  ASSERT_TRUE(applied.waitUntil([](const AppliedCommand& tick) { return tick.mode == "trajectory"; }));
+  trajectory_msgs::JointTrajectory path;
+  path.joint_names = {"joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6", "joint_7"};
+  path.points.resize(1);
+  path.points[0].positions = {0.0, 0.3, 0.0, 1.4, 0.0, 1.44, 0.3};
+  path.points[0].velocities = std::vector<double>(7, 0.0);
+  path.points[0].accelerations = std::vector<double>(7, 0.0);
+  path.points[0].time_from_start = ros::Duration(0.8);
+  paths.publish(path);
+  EXPECT_TRUE(applied.waitUntil([&](const AppliedCommand& tick) { return tick.command == path.points[0].positions; }));
+  EXPECT_TRUE(joint_states.waitUntil([](const auto& state) { return std::abs(state.position[6] - 0.3) < 2e-3; }));
+
+  path.points[0].time_from_start = ros::Duration(0.01);
+  path.points[0].positions[6] = -0.3;
+  paths.publish(path);
+  EXPECT_TRUE(applied.waitUntil([&](const AppliedCommand& tick) {
+    return tick.reason.find(": joint_7 would ") != std::string::npos && tick.reason.rfind("refused from ", 0) == 0;
+  }));
 }
 
 TEST_F(SimulatedArmNodeTest, AnUnknownModeIsRefusedWithTheOnesThereAre) {
   const SetControlMode::Response response = setMode("telepathy");
   EXPECT_FALSE(response.success);
   EXPECT_EQ(response.message,
-            "control mode \"telepathy\" is not one of this arm, expected one of effort, velocity, cartesian_velocity.");
+            "control mode \"telepathy\" is not one of this arm, expected one of effort, velocity, position, "
+            "trajectory, cartesian_velocity.");
 }
 
 TEST_F(SimulatedArmNodeTest, APauseStopsTimeForTheArm) {

@@ -197,7 +197,8 @@ TEST(CommandGateTest, MemoryForClocksIsBounded) {
 }
 
 TEST(ControlModeTest, NamesAndModesAreTheSameBothWays) {
-  for (const ControlMode mode : {ControlMode::effort, ControlMode::velocity, ControlMode::cartesian_velocity}) {
+  for (const ControlMode mode : {ControlMode::effort, ControlMode::velocity, ControlMode::position,
+                                 ControlMode::trajectory, ControlMode::cartesian_velocity}) {
     EXPECT_EQ(toControlMode(toString(mode)), mode);
   }
   try {
@@ -205,8 +206,8 @@ TEST(ControlModeTest, NamesAndModesAreTheSameBothWays) {
     FAIL() << "an unknown mode was taken";
   } catch (const ConfigurationError& error) {
     EXPECT_STREQ(error.what(),
-                 "control mode \"speed\" is not one of this arm, expected one of effort, velocity, "
-                 "cartesian_velocity.");
+                 "control mode \"speed\" is not one of this arm, expected one of effort, velocity, position, "
+                 "trajectory, cartesian_velocity.");
   }
 }
 

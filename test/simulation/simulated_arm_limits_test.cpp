@@ -102,7 +102,7 @@ TEST_P(SimulatedArmLimitsTest, ACommandThatDiffersFromWhatWasAskedComesWithAReas
     now += kMillisecond;
     std::vector<ArmCommand> commands;
     if (k % 100 == 0) {
-      const double scale = std::pow(10.0, static_cast<double>(k % 5) - 2.0);
+      const double scale = std::pow(10.0, static_cast<double>(k / 100 % 5) - 2.0);
       command.values.resize(GetParam() == ControlMode::cartesian_velocity ? 6 : 7);
       for (double& component : command.values) component = scale * value(random);
       commands.push_back(command);
@@ -119,7 +119,8 @@ TEST_P(SimulatedArmLimitsTest, ACommandThatDiffersFromWhatWasAskedComesWithAReas
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, SimulatedArmLimitsTest,
-                         testing::Values(ControlMode::effort, ControlMode::velocity, ControlMode::cartesian_velocity),
+                         testing::Values(ControlMode::effort, ControlMode::velocity, ControlMode::position,
+                                         ControlMode::cartesian_velocity),
                          [](const auto& test) { return toString(test.param); });
 
 }  // namespace

@@ -244,14 +244,29 @@ TEST(SimulatedArmTest, AfterAResetItIsWhereItStartedAndTicksGoOn) {
   EXPECT_EQ(tick.index, 301U);
 }
 
-TEST(SimulatedArmTest, InModeEffortTheTorqueIsTheOneAskedFor) {
+TEST(SimulatedArmTest, InModeEffortCommandsComeOnTopOfGravity) {
   Bench bench(ControlMode::effort);
-  const Eigen::VectorXd gravity = bench.model.gravity(bench.tick().truth.q);
-  ArmTick tick;
-  for (int k = 0; k < 500; ++k) tick = bench.tick({makeEffort(gravity)});
-  EXPECT_EQ(tick.applied.torque, gravity);
+  const ArmCommand nothing = makeEffort(Eigen::VectorXd::Zero(7));
+  const ArmTick tick = bench.repeat(nothing, 500);
+  EXPECT_TRUE(tick.applied.torque.isApprox(bench.model.gravity(tick.truth.q), 1e-12));
+  EXPECT_EQ(tick.applied.command, nothing.values) << "bit for bit";
   EXPECT_EQ(tick.applied.reason, "");
   EXPECT_LT(tick.truth.dq.norm(), 1e-6) << "gravity is balanced, and stiction holds the rest";
+}
+
+TEST(SimulatedArmTest, InModeEffortWithoutCompensationTheTorqueIsTheOneAskedFor) {
+  SimulatedArmConfiguration configuration = makeArmConfiguration(ControlMode::effort);
+  configuration.controller.effort_gravity_compensation = false;
+  SimulatedArm arm(describeDemoArm(), configuration);
+  const RobotModel model(describeDemoArm());
+  Nanoseconds now = kMillisecond;
+  const Eigen::VectorXd gravity = model.gravity(arm.tick(now, {}).truth.q);
+  ArmTick tick;
+  for (int k = 0; k < 500; ++k) tick = arm.tick(now += kMillisecond, {makeEffort(gravity)});
+  EXPECT_EQ(tick.applied.torque, gravity);
+  EXPECT_EQ(tick.applied.command, gravity);
+  EXPECT_EQ(tick.applied.reason, "");
+  EXPECT_LT(tick.truth.dq.norm(), 1e-6);
 }
 
 TEST(SimulatedArmTest, InModeEffortAPushAcceleratesAsTheEquationOfMotionSays) {
@@ -261,6 +276,7 @@ TEST(SimulatedArmTest, InModeEffortAPushAcceleratesAsTheEquationOfMotionSays) {
   const RobotModel model(description);
   SimulatedArmConfiguration configuration;
   configuration.mode = ControlMode::effort;
+  configuration.controller.effort_gravity_compensation = false;
   SimulatedArm arm(description, configuration);
   Nanoseconds now = kMillisecond;
   const ArmTick start = arm.tick(now, {});

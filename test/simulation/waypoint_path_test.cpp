@@ -27,7 +27,7 @@ TEST(WaypointPathTest, RestsInTheFirstPoseBeforeAndInTheLastPoseAfter) {
 }
 
 TEST(WaypointPathTest, IsHalfWayAtHalfTimeWithThePeakVelocityOfMinimumJerk) {
-  const PathPoint middle = WaypointPath(makeStart(), {kAside}).at(1.0);
+  const ToolPoint middle = WaypointPath(makeStart(), {kAside}).at(1.0);
   EXPECT_TRUE(middle.pose.translation().isApprox(makeStart().translation() + kAside.shift / 2.0));
   EXPECT_NEAR(middle.twist[1], 15.0 / 8.0 * 0.2 / 2.0, 1e-15) << "15/8 of the mean velocity";
   EXPECT_NEAR(middle.twist[5], 15.0 / 8.0 * 0.5 / 2.0, 1e-12);
@@ -37,8 +37,8 @@ TEST(WaypointPathTest, ItsTwistIsTheDerivativeOfItsPose) {
   const WaypointPath path(makeStart(), {kAside, kDown});
   const double step = 1e-6;
   for (double time = 0.05; time < 3.0; time += 0.1) {
-    const PathPoint before = path.at(time - step);
-    const PathPoint after = path.at(time + step);
+    const ToolPoint before = path.at(time - step);
+    const ToolPoint after = path.at(time + step);
     Eigen::Matrix<double, 6, 1> derivative;
     derivative << (after.pose.translation() - before.pose.translation()) / (2.0 * step),
         rotationVector(after.pose.linear() * before.pose.linear().transpose()) / (2.0 * step);

@@ -13,11 +13,13 @@
 namespace demo_logger {
 
 struct ArmControllerConfiguration {
-  double control_period = 0.001;   // [s]
-  double command_timeout = 0.5;    // [s] age of a command, by receipt or by stamp, at which the arm brakes
-  double max_acceleration = 10.0;  // [rad/s² or m/s²] of every joint, for following and for braking
-  double velocity_gain = 100.0;    // [1/s] k, how fast a velocity error is taken back
-  double position_margin = 0.01;   // [rad or m] before a position limit at which the arm comes to rest
+  double control_period = 0.001;            // [s]
+  double command_timeout = 0.5;             // [s] age of a command, by receipt or by stamp, at which the arm brakes
+  double max_acceleration = 10.0;           // [rad/s² or m/s²] of every joint, for following and for braking
+  double velocity_gain = 100.0;             // [1/s] k, how fast a velocity error is taken back
+  double position_gain = 50.0;              // [1/s] how fast a position error is taken back
+  double position_margin = 0.01;            // [rad or m] before a position limit at which the arm comes to rest
+  bool effort_gravity_compensation = true;  // mode effort: commands come on top of gravity
 };
 
 /// Throws ConfigurationError naming the field, its value with its unit and what was expected.
@@ -34,7 +36,8 @@ struct AppliedControl {
 
 /// The controller inside an arm: commands in, motor torque out, once per control tick.
 ///   velocity, cartesian_velocity:  τ = M(q) (v̇_ref + k (v_ref − q̇)) + C(q, q̇) q̇ + g(q) + friction(v_ref)
-///   effort:                        τ as commanded
+///   position, trajectory:          the same, with v_ref = velocity of the target + what takes back the position error
+///   effort:                        τ = commanded + g(q), or as commanded without effort_gravity_compensation
 /// v_ref follows the command within the acceleration limit (each part of the sum in the bracket keeps that limit).
 /// Joint commands are limited joint by joint; Cartesian ones are resolved by damped least squares and scaled as a
 /// whole, so that the tip keeps its direction. Whatever is sent, velocities stay within the joints' limits, the arm

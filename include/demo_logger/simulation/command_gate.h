@@ -13,7 +13,8 @@ namespace demo_logger {
 
 /// Lets a sound command in and keeps it in force until it is replaced or too old. It is too old when either its age
 /// since receipt or its age by stamp, corrected by the offset of its publisher's clock, exceeds the timeout: the first
-/// guards against a publisher that died, the second against one whose messages are stuck on the way.
+/// guards against a publisher that died, the second against one whose messages are stuck on the way. A path is in force
+/// until it is replaced: it has a duration of its own.
 class CommandGate {
  public:
   struct Configuration {
@@ -34,6 +35,8 @@ class CommandGate {
   /// The command in force, values in the arm's joint order; null if there is none, and then whyNone() says why.
   const ArmCommand* inForce(Nanoseconds now);
   const std::string& whyNone() const { return why_none_; }
+  /// When the command in force came in.
+  Nanoseconds receipt() const { return receipt_; }
 
   /// Forgets the command in force, not the clocks.
   void clear(const std::string& why);
@@ -46,7 +49,12 @@ class CommandGate {
 
  private:
   std::string checkValues(const ArmCommand& command, ArmCommand& sorted) const;
+  std::string checkTwist(const ArmCommand& command) const;
+  std::string checkNames(const std::vector<std::string>& names, std::vector<Eigen::Index>& order) const;
+  std::string checkSize(const std::string& what, const Eigen::VectorXd& values, std::size_t names) const;
+  std::string sort(const std::string& what, const std::vector<Eigen::Index>& order, Eigen::VectorXd& values) const;
   std::string checkStamp(const ArmCommand& command, Nanoseconds now);
+  static std::string checkStart(const ArmCommand& command, Nanoseconds now);
 
   Configuration configuration_;
   std::map<std::string, PublisherClock> clocks_;  // by source
