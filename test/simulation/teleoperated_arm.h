@@ -51,7 +51,11 @@ inline void teleoperate(SimulatedHumanConfiguration configuration,
     if (k % ticks_per_reading == 0) {
       tick.reading = human.next(now, model.forwardKinematics(tick.arm.truth.q));
       if (const auto command = teleoperation.receive(tick.reading)) {
-        commands.push_back({ControlMode::cartesian_velocity, {}, command->output.value, "", command->stamp, "/teleop"});
+        ArmCommand& sent = commands.emplace_back();
+        sent.mode = ControlMode::cartesian_velocity;
+        sent.values = command->output.value;
+        sent.stamp = command->stamp;
+        sent.source = "/teleop";
       }
     }
     tick.arm = arm.tick(now, commands);
