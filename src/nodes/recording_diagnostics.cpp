@@ -120,7 +120,7 @@ void RecordingDiagnostics::reportClock(Report& report) const {
   report.add("receipt minus stamp [s]", *offset);
   bool unstamped = false;
   for (const StreamMetadata& stream : recorder_.streams()) {
-    unstamped = unstamped || (!stream.stamped && stream.received > 0);
+    unstamped = unstamped || !stream.stamped;
   }
   const std::string sentence =
       "joint-state stamps are " + print(1000.0 * *offset, 1) + " ms from this clock (transport or skew)";
