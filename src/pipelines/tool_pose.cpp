@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 
+#include "demo_logger/formats/column_names.h"
 #include "demo_logger/robot/robot_model.h"
+#include "demo_logger/trajectory/error.h"
 
 namespace demo_logger {
 namespace {
@@ -27,19 +30,42 @@ bool endsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+/// The column of a joint's position, by its source, or without one by its name.
+std::optional<std::size_t> findPosition(const std::vector<Column>& columns, const std::string& joint) {
+  const std::string name = makePortable({"q_" + joint}).names.front();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const Column& column = columns[i];
+    if (column.role != Role::state) continue;
+    if (column.source.empty() ? column.name == name : endsWith(column.source, "/position/" + joint)) return i;
+  }
+  return std::nullopt;
+}
+
 /// Where each joint's position stands in a row; empty if one is missing.
 std::vector<std::size_t> findPositions(const std::vector<Column>& columns, const std::vector<std::string>& joints) {
   std::vector<std::size_t> positions;
   for (const std::string& joint : joints) {
-    const auto found = std::find_if(columns.begin(), columns.end(), [&](const Column& column) {
-      return column.role == Role::state && endsWith(column.source, "/position/" + joint);
-    });
-    if (found == columns.end()) {
+    const auto found = findPosition(columns, joint);
+    if (!found) {
       return {};
     }
-    positions.push_back(static_cast<std::size_t>(found - columns.begin()));
+    positions.push_back(*found);
   }
   return positions;
+}
+
+void removeColumns(const std::vector<Column>& names, Demonstration& demonstration) {
+  for (const Column& gone : names) {
+    std::vector<Column>& columns = demonstration.columns;
+    const auto found =
+        std::find_if(columns.begin(), columns.end(), [&](const Column& column) { return column.name == gone.name; });
+    if (found == columns.end()) continue;
+    const Eigen::Index at = found - columns.begin();
+    const Eigen::Index behind = demonstration.values.cols() - at - 1;
+    demonstration.values.middleCols(at, behind) = demonstration.values.rightCols(behind).eval();
+    demonstration.values.conservativeResize(Eigen::NoChange, demonstration.values.cols() - 1);
+    columns.erase(found);
+  }
 }
 
 }  // namespace
@@ -88,5 +114,28 @@ ToolPose::~ToolPose() = default;
 
 std::vector<Column> ToolPose::open(const std::vector<Column>& recorded) { return implementation_->open(recorded); }
 void ToolPose::append(Row& row) { implementation_->append(row); }
+
+void addToolPose(const RobotDescription& robot, Demonstration& demonstration) {
+  for (const std::string& joint : robot.jointNames()) {
+    if (!findPosition(demonstration.columns, joint)) {
+      throw ConfigurationError("no column `" + makePortable({"q_" + joint}).names.front() +
+                               "` with the position of joint '" + joint + "', which the pose of '" + robot.tip +
+                               "' in '" + robot.base + "' depends on");
+    }
+  }
+  removeColumns(poseColumns(robot), demonstration);
+  ToolPose tool(robot);
+  const std::vector<Column> added = tool.open(demonstration.columns);
+  const Eigen::Index before = demonstration.values.cols();
+  demonstration.values.conservativeResize(Eigen::NoChange, before + static_cast<Eigen::Index>(added.size()));
+  demonstration.columns.insert(demonstration.columns.end(), added.begin(), added.end());
+  Row row;
+  for (Eigen::Index i = 0; i < demonstration.values.rows(); ++i) {
+    auto values = demonstration.values.row(i);
+    row.values.assign(values.data(), values.data() + before);
+    tool.append(row);
+    std::copy(row.values.begin() + before, row.values.end(), values.data() + before);
+  }
+}
 
 }  // namespace demo_logger

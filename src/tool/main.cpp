@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
     addInfoVerb(tool, exit_code);
     addCheckVerb(tool, exit_code);
     addRecoverVerb(tool, exit_code);
+    addKinematicsVerb(tool, exit_code);
+    addIkVerb(tool, exit_code);
     try {
       tool.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

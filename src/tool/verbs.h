@@ -17,5 +17,7 @@ void addImportVerb(CLI::App& tool, int& exit_code);
 void addInfoVerb(CLI::App& tool, int& exit_code);
 void addCheckVerb(CLI::App& tool, int& exit_code);
 void addRecoverVerb(CLI::App& tool, int& exit_code);
+void addKinematicsVerb(CLI::App& tool, int& exit_code);
+void addIkVerb(CLI::App& tool, int& exit_code);
 
 }  // namespace demo_logger

@@ -6,6 +6,7 @@
 
 #include "demo_logger/recording/derived_columns.h"
 #include "demo_logger/robot/robot_description.h"
+#include "demo_logger/trajectory/demonstration.h"
 
 namespace demo_logger {
 
@@ -18,8 +19,8 @@ class ToolPose : public DerivedColumns {
   explicit ToolPose(const RobotDescription& robot);
   ~ToolPose() override;
 
-  /// The joints are found by the source of their columns, joint_states/position/<joint>. A chain whose joints are not
-  /// all recorded gets no columns.
+  /// The joints are found by the source of their columns, joint_states/position/<joint>, or where none is stated by
+  /// their names, q_<joint>. A chain whose joints are not all recorded gets no columns.
   std::vector<Column> open(const std::vector<Column>& recorded) override;
   void append(Row& row) override;
 
@@ -27,5 +28,9 @@ class ToolPose : public DerivedColumns {
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// Appends the tool pose to a recording, in place of columns of these names that it has. Throws ConfigurationError
+/// naming the first joint without a position.
+void addToolPose(const RobotDescription& robot, Demonstration& demonstration);
 
 }  // namespace demo_logger

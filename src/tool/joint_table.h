@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "demo_logger/robot/robot_description.h"
+#include "src/tool/pose_table.h"
+
+namespace demo_logger {
+
+struct SolveTableOptions {
+  double tolerance = 1e-6;       // [m] and [rad]
+  std::optional<double> budget;  // [s] per row
+};
+
+/// What `ik` found for a table: its text, and the figures that are told about it.
+struct JointTable {
+  std::string csv;  // [time,] q_<joint> …, residual, microseconds, status
+  std::size_t rows = 0;
+  std::size_t met = 0;            // solved, or tracked
+  double largest_residual = 0.0;  // of the rows with one [m or rad]
+  double mean_microseconds = 0.0;
+};
+
+using RowProgress = std::function<void(std::size_t done, std::size_t all)>;
+
+/// Each pose by itself (robot/inverse_kinematics.h), from the row's seed or the middle of the ranges.
+JointTable solveTable(const PoseTable& poses, const RobotDescription& arm, const SolveTableOptions& options,
+                      const RowProgress& progress);
+
+}  // namespace demo_logger

@@ -1,0 +1,139 @@
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "demo_logger/formats/atomic_file.h"
+#include "src/tool/joint_table.h"
+#include "src/tool/output_plan.h"
+#include "src/tool/pose_table.h"
+#include "src/tool/progress.h"
+#include "src/tool/robot_options.h"
+#include "src/tool/verbs.h"
+
+namespace demo_logger {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Options {
+  std::vector<std::string> inputs;
+  std::string output;
+  RobotOptions robot;
+  std::optional<double> tolerance;
+  std::optional<double> budget;
+  unsigned jobs = 1;
+  bool force = false;
+  bool json = false;
+};
+
+struct Result {
+  JointTable table;
+  std::vector<std::string> notes;
+};
+
+Result convert(const std::filesystem::path& input, const RobotDescription& arm, const Options& options,
+               const RowProgress& progress) {
+  RowNotes notes(input.string());
+  const PoseTable poses = readPoseTable(input, arm, notes);
+  SolveTableOptions solve;
+  solve.tolerance = options.tolerance.value_or(solve.tolerance);
+  solve.budget = options.budget;
+  Result result;
+  result.table = solveTable(poses, arm, solve, progress);
+  result.notes = notes.sentences();
+  return result;
+}
+
+/// All files are complete on the disk before the first gets its name.
+void writeAll(const std::vector<InputAndOutput>& plan, const std::vector<Result>& results, bool force) {
+  makeDirectories(plan);
+  std::vector<std::unique_ptr<AtomicFile>> files;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    files.push_back(std::make_unique<AtomicFile>(plan[i].output, force));
+    files.back()->write(results[i].table.csv);
+    files.back()->sync();
+  }
+  for (const auto& file : files) file->commit();
+}
+
+ordered_json toJson(const InputAndOutput& entry, const Result& result) {
+  const JointTable& table = result.table;
+  return {{"file", entry.input.string()},
+          {"output", entry.output.string()},
+          {"rows", table.rows},
+          {"solved", table.met},
+          {"largest_residual", table.largest_residual},
+          {"mean_microseconds", table.mean_microseconds},
+          {"notes", result.notes}};
+}
+
+void print(const InputAndOutput& entry, const Result& result) {
+  const JointTable& table = result.table;
+  for (const std::string& note : result.notes) std::cout << note << '\n';
+  std::ostringstream figures;
+  figures.precision(3);
+  figures << "largest residual " << table.largest_residual << " m or rad, " << table.mean_microseconds << " µs a row";
+  std::cout << entry.output.string() << ": " << table.met << " of " << table.rows << " rows solved, " << figures.str()
+            << '\n';
+}
+
+int convertAll(const Options& options) {
+  const RobotDescription arm = describeRobot(options.robot);
+  const std::vector<InputAndOutput> plan = planOutputs(options.inputs, options.output, options.force);
+  std::vector<Result> results(plan.size());
+  {
+    Progress progress("ik");
+    std::mutex watched;
+    runJobs(plan.size(), options.jobs, [&](std::size_t i) {
+      results[i] = convert(plan[i].input, arm, options, [&](std::size_t done, std::size_t all) {
+        const std::lock_guard<std::mutex> lock(watched);
+        progress.show(i * all + done, plan.size() * all);
+      });
+    });
+  }
+  writeAll(plan, results, options.force);
+  int exit_code = kDone;
+  ordered_json tables = ordered_json::array();
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    if (results[i].table.met < results[i].table.rows) exit_code = kFindings;
+    tables.push_back(toJson(plan[i], results[i]));
+    if (!options.json) print(plan[i], results[i]);
+  }
+  if (options.json) std::cout << ordered_json{{"tables", tables}}.dump(2) << '\n';
+  return exit_code;
+}
+
+}  // namespace
+
+void addIkVerb(CLI::App& tool, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = tool.add_subcommand("ik", "poses of the tool become joint positions");
+  verb->add_option("IN", options->inputs,
+                   "tables with columns x y z [m] qx qy qz qw, and if need be time [s], q0_<joint> (seeds)")
+      ->required();
+  verb->add_option("-o,--output", options->output, "table to write; of several inputs the directory for theirs")
+      ->required();
+  addRobotOptions(*verb, options->robot);
+  verb->add_option("--tolerance", options->tolerance,
+                   "[m] and [rad] that position and rotation may be off (default: 1e-6)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--budget", options->budget, "[s] for one row (default: bounded by iterations, some 5 ms)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--jobs", options->jobs, "tables worked on at once")
+      ->capture_default_str()
+      ->check(CLI::Range(1U, 256U));
+  verb->add_flag("--force", options->force, "overwrite what is there");
+  verb->add_flag("--json", options->json, "print one JSON object instead");
+  verb->footer(
+      "Example: demo_tool ik poses.csv -o joints.csv --urdf arm.urdf --base base_link --tip tool0\n"
+      "Columns written: time if given, q_<joint>, residual (larger of [m] and [rad]), microseconds, status.\n"
+      "Exit code: 1 if a row was not solved.");
+  verb->callback([options, &exit_code] { exit_code = convertAll(*options); });
+}
+
+}  // namespace demo_logger

@@ -1,0 +1,238 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "demo_logger/formats/csv_writer.h"
+#include "demo_logger/robot/robot_model.h"
+#include "test/robot/pose_by_hand.h"
+#include "test/robot/subjects.h"
+#include "test/tool/tool_run.h"
+
+namespace demo_logger {
+namespace {
+
+const std::string kTwoLink = " --urdf " DEMO_LOGGER_SOURCE_DIR "/urdf/two_link.urdf --base base_link --tip tool_tip ";
+const std::string kDemoArm = " --urdf " DEMO_LOGGER_SOURCE_DIR "/urdf/demo_arm.urdf --base base_link --tip tool_tip ";
+const std::string kStraightUp = "x,y,z,qx,qy,qz,qw\n0,0,0.9,0,0,0,1\n";
+
+void appendRowOf(std::string& text, std::vector<double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    appendNumber(text, values[i]);
+    text += i + 1 < values.size() ? ',' : '\n';
+  }
+}
+
+std::vector<double> rowOf(const Eigen::Isometry3d& X) {
+  const Eigen::Quaterniond q(X.linear());
+  return {X.translation().x(), X.translation().y(), X.translation().z(), q.x(), q.y(), q.z(), q.w()};
+}
+
+TEST(VerbIkTest, WritesOneRowPerPoseInOrderWithTheStatusLast) {
+  const ToolRun run;
+  const RobotDescription arm = describeOwnArm("demo_arm");
+  const RobotModel kdl(arm);
+  std::mt19937_64 generator(1);
+  std::string poses = "time,x,y,z,qx,qy,qz,qw\n";
+  std::vector<Eigen::Isometry3d, Eigen::aligned_allocator<Eigen::Isometry3d>> targets;
+  for (int i = 0; i < 200; ++i) {
+    targets.push_back(kdl.forwardKinematics(randomPosture(arm, generator)));
+    std::vector<double> row = rowOf(targets.back());
+    row.insert(row.begin(), 5.0 - i);  // solve does not mind the order of times
+    appendRowOf(poses, row);
+  }
+  run.write("poses.csv", poses);
+  const auto outcome = run("ik poses.csv -o joints.csv --tolerance 1e-9" + kDemoArm);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("joints.csv: 200 of 200 rows solved, largest residual "), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(outcome.err, "");
+  const auto table = run.cells("joints.csv");
+  ASSERT_EQ(table.size(), 201U);
+  const std::vector<std::string> header = {"time",      "q_joint_1",    "q_joint_2", "q_joint_3",
+                                           "q_joint_4", "q_joint_5",    "q_joint_6", "q_joint_7",
+                                           "residual",  "microseconds", "status"};
+  EXPECT_EQ(table[0], header);
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const auto& row = table[i + 1];
+    EXPECT_EQ(row[0], std::to_string(5 - static_cast<int>(i)));
+    Eigen::VectorXd q(7);
+    for (int joint = 0; joint < 7; ++joint) q[joint] = std::stod(row[1 + static_cast<std::size_t>(joint)]);
+    EXPECT_LT(poseDistance(kdl.forwardKinematics(q), targets[i]), 1e-9 + 1e-12) << i;
+    EXPECT_LE(std::stod(row[8]), 1e-9);
+    EXPECT_GT(std::stod(row[9]), 0.0);
+    EXPECT_EQ(row[10], "solved");
+  }
+}
+
+TEST(VerbIkTest, SeedsChooseTheTurnAndTimeIsLeftOutWhereThereIsNone) {
+  const ToolRun run;
+  run.write("poses.csv",
+            "q0_joint_1,q0_joint_2,x,y,z,qx,qy,qz,qw\n6.2,0.1,0,0,0.9,0,0,0,1\n-6.2,0.1,0,0,0.9,0,0,0,1\n");
+  EXPECT_EQ(run("ik poses.csv -o joints.csv" + kTwoLink).exit_code, 0);
+  const auto table = run.cells("joints.csv");
+  ASSERT_EQ(table.size(), 3U);
+  EXPECT_EQ(table[0].front(), "q_joint_1");
+  EXPECT_NEAR(std::stod(table[1][0]), 2.0 * M_PI, 1e-2)
+      << "stretched is singular: the angle is only as good as the root";
+  EXPECT_NEAR(std::stod(table[2][0]), -2.0 * M_PI, 1e-2);
+}
+
+TEST(VerbIkTest, UnsolvedRowsAreFindingsWithTheBestThatWasFound) {
+  const ToolRun run;
+  run.write("poses.csv", "x,y,z,qx,qy,qz,qw\n0,0,1.5,0,0,0,1\n0,0,0.9,0,0,0,1\nNaN,0,0.9,0,0,0,1\n0,0,0.9,0,0,0,0\n");
+  const auto outcome = run("ik poses.csv -o joints.csv" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.out.find("poses.csv:4: the pose holds a value that is not a finite number; the row is not solved "
+                             "(and 1 row more)"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find("joints.csv: 1 of 4 rows solved"), std::string::npos) << outcome.out;
+  const auto table = run.cells("joints.csv");
+  ASSERT_EQ(table.size(), 5U);
+  EXPECT_EQ(table[1].back(), "failed");
+  EXPECT_NEAR(std::stod(table[1][2]), 0.6, 1e-3) << "1.5 m asked, 0.9 m reached";
+  EXPECT_EQ(table[2].back(), "solved");
+  for (const std::size_t row : {3U, 4U}) {
+    EXPECT_EQ(table[row][0], "NaN");
+    EXPECT_EQ(table[row][2], "NaN");
+    EXPECT_EQ(table[row].back(), "failed");
+  }
+}
+
+TEST(VerbIkTest, AQuaternionOfAnotherLengthIsNormalisedAndSaid) {
+  const ToolRun run;
+  run.write("poses.csv", "x,y,z,qx,qy,qz,qw\n0,0,0.9,0,0,0,1.17\n");
+  const auto outcome = run("ik poses.csv -o joints.csv" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_NE(outcome.out.find("poses.csv:2: the quaternion has length 1.17, expected 1; it is normalised\n"),
+            std::string::npos)
+      << outcome.out;
+}
+
+TEST(VerbIkTest, ASeedOutOfLimitsIsSaidWithJointAndLimits) {
+  const ToolRun run;
+  run.write("poses.csv",
+            "x,y,z,qx,qy,qz,qw,q0_joint_1,q0_joint_2\n0.5,0,0.3,0,0.7071067811865476,0,0.7071067811865476,99,0\n");
+  const auto outcome = run("ik poses.csv -o joints.csv" + kTwoLink);
+  EXPECT_NE(
+      outcome.out.find("poses.csv:2: the seed of joint 'joint_1' is 99, out of its limits -12.5664 to 12.5664; the "
+                       "nearest limit is taken"),
+      std::string::npos)
+      << outcome.out;
+}
+
+TEST(VerbIkTest, WhatKinematicsWritesCanBeRead) {
+  const ToolRun run;
+  run.write("motion.csv", "time,q_joint_1,q_joint_2\n0,0.3,0.9\n0.1,0.4,1.0\n");
+  ASSERT_EQ(run("kinematics motion.csv -o posed.csv" + kTwoLink).exit_code, 0);
+  EXPECT_EQ(run("ik posed.csv -o joints.csv" + kTwoLink).exit_code, 0);
+  const auto table = run.cells("joints.csv");
+  EXPECT_NEAR(std::stod(table[2][1]), 0.4, 1e-6);
+  EXPECT_NEAR(std::stod(table[2][2]), 1.0, 1e-6);
+}
+
+TEST(VerbIkTest, RefusesInOneSentenceAndWritesNothing) {
+  const ToolRun run;
+  run.write("poses.csv", kStraightUp);
+  run.write("there.csv", "mine");
+  run.write("short.csv", "x,y,z,qx,qy,qz\n0,0,0.9,0,0,0\n");
+  run.write("half.csv", "x,y,z,qx,qy,qz,qw,q0_joint_2\n0,0,0.9,0,0,0,1,0\n");
+  const std::vector<std::pair<std::string, std::string>> refused = {
+      {"ik poses.csv -o there.csv" + kTwoLink,
+       "there.csv: exists already and is not overwritten; choose another name, or add --force\n"},
+      {"ik nothing.csv -o joints.csv" + kTwoLink, "nothing.csv: no such file or directory\n"},
+      {"ik short.csv -o joints.csv" + kTwoLink,
+       "short.csv:1: there is no column `qw`, expected the pose of the tip as x, y, z [m], qx, qy, qz, qw\n"},
+      {"ik half.csv -o joints.csv" + kTwoLink,
+       "half.csv:1: there is no column `q0_joint_1`, expected a q0_ column for each of the 2 joints of robot "
+       "'two_link', "
+       "or none\n"},
+      {"ik poses.csv short.csv -o many" + kTwoLink,
+       "short.csv:1: there is no column `qw`, expected the pose of the tip as x, y, z [m], qx, qy, qz, qw\n"},
+      {"ik poses.csv short.csv -o there.csv" + kTwoLink,
+       "there.csv: is a file, expected a directory for the results of 2 inputs\n"},
+      {"ik poses.csv -o joints.csv --at torso" + kTwoLink,
+       "--at \"torso\": expected JOINT=VALUE with a position in rad or m, as in --at torso=0.3\n"},
+      {"ik poses.csv -o joints.csv --urdf none.urdf", "none.urdf: no such file, expected a robot description (URDF)\n"},
+  };
+  for (const auto& [arguments, sentence] : refused) {
+    const auto outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_EQ(outcome.err, sentence);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_FALSE(run.exists("joints.csv"));
+    EXPECT_FALSE(run.exists("many"));
+    EXPECT_EQ(run.read("there.csv"), "mine");
+  }
+  EXPECT_EQ(run("ik poses.csv -o joints.csv --tolerance=-1" + kTwoLink).exit_code, 2);
+  EXPECT_EQ(run("ik poses.csv -o there.csv --force" + kTwoLink).exit_code, 0);
+  EXPECT_NE(run.read("there.csv"), "mine");
+}
+
+TEST(VerbIkTest, ManyTablesGoIntoADirectoryAndJsonIsOneObject) {
+  const ToolRun run;
+  run.write("a.csv", kStraightUp);
+  run.write("b.csv", kStraightUp);
+  const auto outcome = run("ik a.csv b.csv -o joints --jobs 2 --json" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto tables = nlohmann::json::parse(outcome.out)["tables"];
+  ASSERT_EQ(tables.size(), 2U);
+  EXPECT_EQ(tables[1]["output"], "joints/b.csv");
+  EXPECT_EQ(tables[1]["rows"], 1);
+  EXPECT_EQ(tables[1]["solved"], 1);
+  EXPECT_TRUE(run.exists("joints/a.csv"));
+}
+
+TEST(VerbKinematicsTest, AddsThePoseOfTheClosedFormAndKeepsEverythingElse) {
+  const ToolRun run;
+  run.write("motion.csv", "time,q_joint_2,note,q_joint_1\n0,0.5,7,0\n0.1,NaN,8,0\n");
+  const auto outcome = run("kinematics motion.csv -o posed.csv" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("posed.csv: 2 rows with the pose of tool_tip in base_link\n"), std::string::npos)
+      << outcome.out;
+  const auto table = run.cells("posed.csv");
+  const std::vector<std::string> header = {"time", "q_joint_2", "note",  "q_joint_1", "ee_x", "ee_y",
+                                           "ee_z", "ee_qx",     "ee_qy", "ee_qz",     "ee_qw"};
+  EXPECT_EQ(table[0], header);
+  EXPECT_EQ(table[1][2], "7");
+  EXPECT_NEAR(std::stod(table[1][4]), 0.4 * std::sin(0.5), 1e-15);
+  EXPECT_NEAR(std::stod(table[1][6]), 0.5 + 0.4 * std::cos(0.5), 1e-15);
+  EXPECT_NEAR(std::stod(table[1][8]), std::sin(0.25), 1e-15);
+  EXPECT_EQ(table[2][4], "NaN") << "a joint without a position leaves no pose";
+  const auto sidecar = nlohmann::json::parse(run.read("posed.json"));
+  EXPECT_EQ(sidecar["robot"]["tip"], "tool_tip");
+  EXPECT_EQ(sidecar["provenance"]["parent"], "motion.csv");
+  EXPECT_EQ(sidecar["provenance"]["steps"].back(), "kinematics --base base_link --tip tool_tip");
+}
+
+TEST(VerbKinematicsTest, PosesThatAreThereAreReplacedNotDoubled) {
+  const ToolRun run;
+  run.write("motion.csv", "time,ee_x,q_joint_1,q_joint_2,ee_z\n0,9,0,0,9\n0.1,9,0,0,9\n");
+  ASSERT_EQ(run("kinematics motion.csv -o posed.csv" + kTwoLink).exit_code, 0);
+  const auto table = run.cells("posed.csv");
+  EXPECT_EQ(table[0].size(), 10U);
+  EXPECT_EQ(table[0][3], "ee_x");
+  EXPECT_EQ(table[1][1], "0");
+  EXPECT_NEAR(std::stod(table[1][5]), 0.9, 1e-15);
+}
+
+TEST(VerbKinematicsTest, AMissingJointIsNamedAndNothingIsWritten) {
+  const ToolRun run;
+  run.write("motion.csv", "time,q_joint_1\n0,0\n0.1,0\n");
+  const auto outcome = run("kinematics motion.csv -o posed.csv" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.err,
+            "motion.csv: no column `q_joint_2` with the position of joint 'joint_2', which the pose of 'tool_tip' in "
+            "'base_link' depends on\n");
+  EXPECT_FALSE(run.exists("posed.csv"));
+  run.write("whole.csv", "time,q_joint_1,q_joint_2\n0,0,0\n0.1,0,0\n");
+  run.write("posed.json", "{}");
+  EXPECT_EQ(run("kinematics whole.csv -o posed.csv" + kTwoLink).err,
+            "posed.json: exists already and is not overwritten; choose another name, or add --force\n");
+  EXPECT_FALSE(run.exists("posed.csv"));
+}
+
+}  // namespace
+}  // namespace demo_logger
