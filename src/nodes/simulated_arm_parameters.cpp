@@ -83,6 +83,7 @@ SimulatedArmParameters readSimulatedArmParameters(const ros::NodeHandle& private
   parameters.rejectUnknown();
 
   result.robot = describeRobot(readRobotDescription(private_node), chain);
+  for (const std::string& warning : result.robot.warnings) ROS_WARN_STREAM(warning);
   return result;
 }
 

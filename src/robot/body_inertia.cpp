@@ -1,6 +1,7 @@
 #include "body_inertia.h"
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <sstream>
 
 namespace demo_logger {
@@ -27,30 +28,56 @@ BodyInertia lumped(const BodyInertia& a, const BodyInertia& b) {
   return {mass, center, inertia};
 }
 
-std::string impossibility(const BodyInertia& body) {
-  // Exporters print six digits: a rod's or a plate's exact equality may be missed by that much.
-  constexpr double kRelativeRounding = 1e-5;
+namespace {
 
+/// Principal moments I₁ ≤ I₂ ≤ I₃ [kg m²].
+Eigen::Vector3d principalMoments(const BodyInertia& body) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(body.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+/// What exporters' rounding may add or take [kg m²]: six significant digits, or six decimals; and a hair for turning
+/// tensors that are zero.
+double rounding(const BodyInertia& body, const Eigen::Vector3d& moments) {
+  return 1e-5 * moments.cwiseAbs().maxCoeff() + 1e-10 * body.mass;
+}
+constexpr double kSixDecimals = 2e-6;  // [kg m²]
+
+/// By how much the largest moment exceeds the sum of the other two, which no body has [kg m²].
+double excess(const Eigen::Vector3d& moments) { return moments[2] - moments[0] - moments[1]; }
+
+std::string impossibleMoments(const Eigen::Vector3d& moments, const char* rule) {
   std::ostringstream fault;
-  if (!std::isfinite(body.mass) || !body.center.allFinite() || !body.inertia.allFinite()) {
-    fault << "mass properties that are not finite";
-  } else if (body.mass < 0.0) {
-    fault << "mass " << body.mass << " kg, expected a positive one";
-  } else if (body.mass == 0.0) {
-    if (!body.inertia.isZero(0.0)) fault << "inertia without mass";
-  } else {
-    const Eigen::Vector3d moments =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(body.inertia, Eigen::EigenvaluesOnly).eigenvalues();
-    const double rounding = kRelativeRounding * moments.cwiseAbs().maxCoeff();
-    const bool negative = moments[0] < -rounding;
-    const bool triangle_broken = moments[2] > moments[0] + moments[1] + rounding;
-    if (negative || triangle_broken) {
-      fault << "principal moments of inertia " << moments[0] << ", " << moments[1] << ", " << moments[2]
-            << " kg m², which no body has: "
-            << (negative ? "none may be negative" : "the largest may not exceed the sum of the other two");
-    }
-  }
+  fault << "principal moments of inertia " << moments[0] << ", " << moments[1] << ", " << moments[2]
+        << " kg m², which no body has: " << rule;
   return fault.str();
+}
+
+constexpr const char* kTriangle = "the largest may not exceed the sum of the other two";
+
+}  // namespace
+
+std::string impossibility(const BodyInertia& body) {
+  constexpr double kGross = 0.2;  // of the largest moment
+
+  if (!std::isfinite(body.mass) || !body.center.allFinite() || !body.inertia.allFinite()) {
+    return "mass properties that are not finite";
+  }
+  if (body.mass < 0.0) {
+    std::ostringstream fault;
+    fault << "mass " << body.mass << " kg, expected a positive one";
+    return fault.str();
+  }
+  if (body.mass == 0.0) return body.inertia.isZero(0.0) ? "" : "inertia without mass";
+  const Eigen::Vector3d moments = principalMoments(body);
+  if (moments[0] < -rounding(body, moments)) return impossibleMoments(moments, "none may be negative");
+  if (excess(moments) > kSixDecimals + kGross * moments[2]) return impossibleMoments(moments, kTriangle);
+  return {};
+}
+
+std::string implausibility(const BodyInertia& body) {
+  if (const std::string impossible = impossibility(body); !impossible.empty()) return impossible;
+  const Eigen::Vector3d moments = principalMoments(body);
+  return excess(moments) > kSixDecimals + rounding(body, moments) ? impossibleMoments(moments, kTriangle) : "";
 }
 
 }  // namespace demo_logger

@@ -78,7 +78,8 @@ LockedJoints::Hold LockedJoints::holdOf(const urdf::Joint& joint) const {
     const std::string& master = held->mimic->joint_name;
     const auto next = model_.joints_.find(master);
     if (next == model_.joints_.end()) {
-      throw ModelError("joint '" + held->name + "' mimics joint '" + master + "', which does not exist");
+      throw ModelError("joint '" + held->name + "' mimics joint '" + master + "', which does not exist; lock '" +
+                       held->name + "' at a position to ignore that");
     }
     offset += multiplier * held->mimic->offset;
     multiplier *= held->mimic->multiplier;

@@ -51,30 +51,33 @@ std::vector<PlacedLink> linksMovingWith(const urdf::LinkConstSharedPtr& first, c
   return body;
 }
 
-/// The lumped body of one moving joint; the first impossibility or absence found goes into `fault` if that is empty.
+/// The lumped body of one moving joint. The whole is judged: it is what moves. What its parts lack or claim is kept as
+/// the reason, or else as a warning.
 BodyInertia lumpedBody(const std::vector<PlacedLink>& links, const std::string& joint,
-                       const std::map<std::string, std::string>& unread_inertia, std::string& fault) {
+                       const std::map<std::string, std::string>& unread_inertia, RobotDescription& description) {
+  std::vector<std::string> faults, doubts;
   BodyInertia body;
   for (const auto& [link, X_body_link, not_rigid] : links) {
     const BodyInertia own = inertiaOf(*link);
-    const std::string impossible = impossibility(own);
-    if (own.mass < 0.0) throw ModelError("link '" + link->name + "' has " + impossible);
-    if (!impossible.empty() && fault.empty()) fault = "link '" + link->name + "' has " + impossible;
-    if (const auto unread = unread_inertia.find(link->name); unread != unread_inertia.end() && fault.empty()) {
-      fault = "link '" + link->name + "' has an <inertial> element that cannot be read: " + unread->second;
+    if (own.mass < 0.0) throw ModelError("link '" + link->name + "' has " + impossibility(own));
+    if (const auto unread = unread_inertia.find(link->name); unread != unread_inertia.end()) {
+      faults.push_back("link '" + link->name + "' has an <inertial> element that cannot be read: " + unread->second);
     }
-    if (own.mass != 0.0 && !not_rigid.empty() && fault.empty()) {
-      fault = "link '" + link->name + "' hangs from " + not_rigid;
+    if (own.mass != 0.0 && !not_rigid.empty()) faults.push_back("link '" + link->name + "' hangs from " + not_rigid);
+    if (const std::string doubt = implausibility(own); !doubt.empty()) {
+      doubts.push_back("link '" + link->name + "' has " + doubt);
     }
     body = lumped(body, movedTo(X_body_link, own));
   }
-  if (const std::string impossible = impossibility(body); !impossible.empty() && fault.empty()) {
-    fault = "all that joint '" + joint + "' moves up to the next joint has " + impossible;
+  if (const std::string impossible = impossibility(body); !impossible.empty()) {
+    faults.push_back(doubts.empty() ? "all that joint '" + joint + "' moves up to the next joint has " + impossible
+                                    : doubts.front());
+  } else if (body.mass == 0.0) {
+    faults.push_back("nothing that joint '" + joint + "' moves has mass up to the next joint; give link '" +
+                     links.front().link->name + "' an <inertial> element");
   }
-  if (body.mass == 0.0 && fault.empty()) {
-    fault = "nothing that joint '" + joint + "' moves has mass up to the next joint; give link '" +
-            links.front().link->name + "' an <inertial> element";
-  }
+  if (description.inertia_fault.empty() && !faults.empty()) description.inertia_fault = faults.front();
+  description.warnings.insert(description.warnings.end(), doubts.begin(), doubts.end());
   return body;
 }
 
@@ -171,7 +174,7 @@ RobotDescription describeTree(const ParsedUrdf& parsed, const DescriptionOptions
     const std::size_t next = description.joints.size() + 1;
     arm_joint.body = lumpedBody(linksMovingWith(findLink(model, arm_joint.link),
                                                 next < moving.size() ? moving[next] : std::string(), model, locked),
-                                arm_joint.name, parsed.unread_inertia, description.inertia_fault);
+                                arm_joint.name, parsed.unread_inertia, description);
     description.joints.push_back(std::move(arm_joint));
   }
   description.X_lastlink_tip = X_body_link;
@@ -186,6 +189,7 @@ RobotDescription describe(const std::string& where, const std::string& urdf_xml,
     RobotDescription description = describeTree(parseUrdf(urdf_xml), options);
     description.urdf_sha256 = sha256(urdf_xml);
     if (!description.has_inertia) description.inertia_fault = where + ": " + description.inertia_fault;
+    for (std::string& warning : description.warnings) warning = where + ": " + warning;
     return description;
   } catch (const ModelError& error) {
     throw ModelError(where + ": " + error.what());

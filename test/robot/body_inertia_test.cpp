@@ -53,6 +53,25 @@ TEST(BodyInertiaTest, PointsRodsPlatesAndBoxesArePossible) {
   EXPECT_EQ(impossibility(BodyInertia()), "") << "no matter at all";
 }
 
+TEST(BodyInertiaTest, RoundingIsForgiven) {
+  BodyInertia body;
+  body.mass = 0.05;
+  body.inertia.diagonal() << 0.0, 0.0, 1e-6;  // printed with six decimals
+  EXPECT_EQ(implausibility(body), "");
+  body.inertia.diagonal() << -1e-20, 0.0, 1e-20;  // a point mass, turned
+  EXPECT_EQ(implausibility(body), "");
+}
+
+TEST(BodyInertiaTest, AFewPerCentBeyondThePossibleAreDoubtfulOnly) {
+  BodyInertia body;
+  body.mass = 1.0;
+  body.inertia.diagonal() << 1.0, 1.0, 2.1;
+  EXPECT_EQ(impossibility(body), "");
+  EXPECT_EQ(implausibility(body),
+            "principal moments of inertia 1, 1, 2.1 kg m², which no body has: the largest may not exceed the sum of "
+            "the other two");
+}
+
 TEST(BodyInertiaTest, SaysWhatIsImpossible) {
   BodyInertia body;
   body.mass = 1.0;

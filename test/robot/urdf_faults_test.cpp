@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "demo_logger/robot/robot_description.h"
 #include "demo_logger/robot/robot_model.h"
@@ -169,9 +170,11 @@ TEST(UrdfFaultsTest, MimicsThatCannotBeFollowed) {
            kLimit + "<mimic joint='" + mimic + "'/></joint>";
   };
   EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("ghost")), "base", "hand"),
-            "robot description: joint 'grip' mimics joint 'ghost', which does not exist");
+            "robot description: joint 'grip' mimics joint 'ghost', which does not exist; lock 'grip' at a "
+            "position to ignore that");
   EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("ghost")), "base", "finger"),
-            "robot description: joint 'grip' mimics joint 'ghost', which does not exist");
+            "robot description: joint 'grip' mimics joint 'ghost', which does not exist; lock 'grip' at a "
+            "position to ignore that");
   EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("grip")), "base", "hand"),
             "robot description: joint 'grip' mimics itself by way of other joints");
   EXPECT_EQ(faultOf(simpleArm("revolute", kLimit, "", side("grip")), "base", "finger"),
@@ -220,6 +223,28 @@ TEST(UrdfFaultsTest, InertiaIsAskedForOnlyByDynamics) {
   EXPECT_EQ(sentenceOf([&] { unphysical.massMatrix(q); }),
             "no dynamics for robot 'r': robot description: link 'hand' has principal moments of inertia 1, 1, 3 "
             "kg m², which no body has: the largest may not exceed the sum of the other two");
+}
+
+TEST(UrdfFaultsTest, DoubtfulInertiaIsAWarningWhereItCanBeComputedWith) {
+  const auto inertial = [](const std::string& izz) {
+    return "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='" + izz + "'/></inertial>";
+  };
+  const RobotDescription slightly = describeRobot(simpleArm("revolute", kLimit, inertial("2.1")), {});
+  EXPECT_EQ(slightly.inertia_fault, "");
+  EXPECT_EQ(slightly.warnings,
+            std::vector<std::string>{"robot description: link 'hand' has principal moments of inertia 1, 1, 2.1 kg m², "
+                                     "which no body has: the largest may not exceed the sum of the other two"});
+  EXPECT_TRUE(describeRobot(simpleArm("revolute", kLimit, inertial("2")), {}).warnings.empty()) << "a plate";
+
+  const std::string tool = "<link name='tool'>" + inertial("9") +
+                           "</link><joint name='mount' type='fixed'><parent link='hand'/><child link='tool'/>";
+  const RobotDescription lumped = describeRobot(
+      simpleArm("revolute", kLimit,
+                "<inertial><mass value='1'/><inertia ixx='20' ixy='0' ixz='0' iyy='20' iyz='0' izz='20'/></inertial>",
+                tool + "</joint>"),
+      {});
+  EXPECT_EQ(lumped.inertia_fault, "") << "hand and tool move as one, and as one they are possible";
+  EXPECT_EQ(lumped.warnings.size(), 1u);
 }
 
 TEST(UrdfFaultsTest, InertiaThatCannotBeReadIsNoMasslessLink) {

@@ -48,8 +48,9 @@ struct RobotDescription {
   std::vector<ArmJoint> joints;
   Eigen::Isometry3d X_lastlink_tip = Eigen::Isometry3d::Identity();
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  // [m/s²] in the base frame: −z of the URDF root
-  bool has_inertia = false;                  // every moving body has mass properties that matter can have
+  bool has_inertia = false;                  // every moving body has mass properties that one can compute with
   std::string inertia_fault;                 // why not, in one sentence; empty with has_inertia
+  std::vector<std::string> warnings;         // what is doubtful though usable, a sentence each: inertias no body has
 
   std::vector<std::string> jointNames() const;
 };
