@@ -26,8 +26,12 @@ double nearestToZero(const ArmJoint& joint) { return std::clamp(0.0, joint.lower
 
 class BulletArm::Implementation {
  public:
-  explicit Implementation(const RobotDescription& given)
-      : description(requireInertia(given)), size(static_cast<int>(given.joints.size())), dynamics(description) {
+  Implementation(const RobotDescription& given, const Surroundings& around, Integrator how)
+      : description(requireInertia(given)),
+        surroundings(around),
+        integrator(how),
+        size(static_cast<int>(given.joints.size())),
+        dynamics(std::make_unique<ArmDynamics>(description, surroundings)) {
     Eigen::VectorXd q(size);
     for (int i = 0; i < size; ++i) q[i] = nearestToZero(description.joints[static_cast<std::size_t>(i)]);
     reset({q, Eigen::VectorXd::Zero(size)});
@@ -39,6 +43,8 @@ class BulletArm::Implementation {
     checkLimits(given.q);
     state = given;
     friction = Eigen::VectorXd::Zero(size);
+    link_torque.resize(0);
+    contacts.clear();
   }
 
   void check(const char* what, const Eigen::VectorXd& values) const {
@@ -69,21 +75,33 @@ class BulletArm::Implementation {
   }
 
   RobotDescription description;
+  Surroundings surroundings;
+  Integrator integrator;
   int size;
-  ArmDynamics dynamics;
+  std::unique_ptr<ArmDynamics> dynamics;
   ArmState state;
   Eigen::VectorXd friction;
+  Eigen::VectorXd link_torque;
+  std::vector<Contact> contacts;
 };
 
-BulletArm::BulletArm(const RobotDescription& description)
-    : implementation_(std::make_unique<Implementation>(description)) {}
+BulletArm::BulletArm(const RobotDescription& description, const Surroundings& surroundings, Integrator integrator)
+    : implementation_(std::make_unique<Implementation>(description, surroundings, integrator)) {}
 BulletArm::~BulletArm() = default;
 
 void BulletArm::reset(const ArmState& state) { implementation_->reset(state); }
 
 const ArmState& BulletArm::state() const { return implementation_->state; }
 
-void BulletArm::step(const Eigen::VectorXd& torque, double duration, int substeps) {
+void BulletArm::setDescription(const RobotDescription& description) {
+  Implementation& own = *implementation_;
+  requireInertia(description);
+  own.description = description;
+  own.dynamics = std::make_unique<ArmDynamics>(description, own.surroundings);
+}
+
+void BulletArm::step(const Eigen::VectorXd& torque, double duration, int substeps,
+                     const std::vector<LinkWrench>& wrenches) {
   Implementation& own = *implementation_;
   own.check("torque", torque);
   if (!(duration > 0.0) || !std::isfinite(duration) || substeps < 1) {
@@ -92,18 +110,36 @@ void BulletArm::step(const Eigen::VectorXd& torque, double duration, int substep
   }
   const double step = duration / substeps;
   own.friction.setZero();
-  for (int substep = 0; substep < substeps; ++substep) own.dynamics.step(own.state, torque, step, own.friction);
+  const ArmLoads loads{torque, wrenches};
+  for (int substep = 0; substep < substeps; ++substep) {
+    if (own.integrator == Integrator::runge_kutta_4) {
+      own.dynamics->stepRungeKutta(own.state, loads, step);
+    } else {
+      own.dynamics->stepEuler(own.state, loads, step);
+    }
+    own.friction += own.dynamics->frictionImpulse();
+  }
   own.friction /= duration;
+  own.link_torque = own.dynamics->linkTorque();
+  own.contacts = own.dynamics->contacts();
+}
+
+const Eigen::VectorXd& BulletArm::linkTorque() const { return implementation_->link_torque; }
+
+const std::vector<Contact>& BulletArm::contacts() const { return implementation_->contacts; }
+
+Eigen::VectorXd BulletArm::externalTorque(const std::vector<LinkWrench>& wrenches) const {
+  return implementation_->dynamics->externalTorque(implementation_->state.q, wrenches);
 }
 
 const Eigen::VectorXd& BulletArm::frictionTorque() const { return implementation_->friction; }
 
-Eigen::Isometry3d BulletArm::tipPose() const { return implementation_->dynamics.tipPose(implementation_->state.q); }
+Eigen::Isometry3d BulletArm::tipPose() const { return implementation_->dynamics->tipPose(implementation_->state.q); }
 
 Eigen::VectorXd BulletArm::acceleration(const Eigen::VectorXd& torque) const {
   Implementation& own = *implementation_;
   own.check("torque", torque);
-  return own.dynamics.acceleration(own.state, torque);
+  return own.dynamics->acceleration(own.state, torque);
 }
 
 }  // namespace demo_logger

@@ -18,23 +18,24 @@ void ConstraintProblem::clear() {
 }
 
 int ConstraintProblem::addJoint(int joint, double target, double lowest, double highest) {
-  rows_.push_back({joint, -1, target, lowest, highest, -1});
+  rows_.push_back({joint, -1, target, lowest, highest, -1, 0.0});
   return rows() - 1;
 }
 
-int ConstraintProblem::add(const Eigen::VectorXd& direction, double target, double lowest, double highest) {
-  return addAlong(direction, target, lowest, highest, -1);
+int ConstraintProblem::add(const Eigen::VectorXd& direction, double target, double lowest, double highest,
+                           double softness) {
+  return addAlong(direction, {-1, -1, target, lowest, highest, -1, softness});
 }
 
-int ConstraintProblem::addSliding(const Eigen::VectorXd& direction, double coefficient, int normal) {
-  return addAlong(direction, 0.0, -coefficient, coefficient, normal);
+int ConstraintProblem::addSliding(const Eigen::VectorXd& direction, double coefficient, int normal, double softness) {
+  return addAlong(direction, {-1, -1, 0.0, -coefficient, coefficient, normal, softness});
 }
 
-int ConstraintProblem::addAlong(const Eigen::VectorXd& direction, double target, double lowest, double highest,
-                                int normal) {
+int ConstraintProblem::addAlong(const Eigen::VectorXd& direction, const Row& row) {
   if (used_directions_ == static_cast<int>(directions_.size())) directions_.emplace_back();
   directions_[static_cast<std::size_t>(used_directions_)] = direction;
-  rows_.push_back({-1, used_directions_++, target, lowest, highest, normal});
+  rows_.push_back(row);
+  rows_.back().direction = used_directions_++;
   return rows() - 1;
 }
 
@@ -76,6 +77,7 @@ void ConstraintProblem::solve(const Eigen::MatrixXd& W, Eigen::VectorXd& velocit
   for (int i = 0; i < n; ++i) {
     const Row& row = rows_[static_cast<std::size_t>(i)];
     wanted_[i] += row.target;
+    matrix_(i, i) *= 1.0 + row.softness;
     lowest_[i] = row.lowest;
     highest_[i] = row.highest;
     normals_[static_cast<std::size_t>(i)] = row.normal;

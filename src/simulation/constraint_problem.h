@@ -18,10 +18,10 @@ class ConstraintProblem {
 
   /// A row for the velocity of one joint alone; returns its number. The bounds must enclose 0.
   int addJoint(int joint, double target, double lowest, double highest);
-  /// A row along any direction.
-  int add(const Eigen::VectorXd& direction, double target, double lowest, double highest);
+  /// A row along any direction. It yields to its impulse by `softness` times what the arm itself does.
+  int add(const Eigen::VectorXd& direction, double target, double lowest, double highest, double softness = 0.0);
   /// As above with target 0, bounded by ± `coefficient` times the impulse of row `normal`, which it slides upon.
-  int addSliding(const Eigen::VectorXd& direction, double coefficient, int normal);
+  int addSliding(const Eigen::VectorXd& direction, double coefficient, int normal, double softness = 0.0);
 
   /// Turns the velocity without constraints into the one with them.
   void solve(const Eigen::MatrixXd& W, Eigen::VectorXd& velocity);
@@ -38,9 +38,10 @@ class ConstraintProblem {
     double lowest;
     double highest;
     int normal;  // -1: the bounds are its own
+    double softness;
   };
 
-  int addAlong(const Eigen::VectorXd& direction, double target, double lowest, double highest, int normal);
+  int addAlong(const Eigen::VectorXd& direction, const Row& row);
   void fillJacobian(Eigen::Index joints);
   void sweep();
 

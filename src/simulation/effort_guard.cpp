@@ -17,7 +17,11 @@ Eigen::VectorXd EffortGuard::guarded(const Eigen::VectorXd& asked, const ArmStat
   Eigen::VectorXd torque = servo_.limited(asked, reasons);
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model_.size());
   const Eigen::VectorXd bias = servo_.inverseDynamics(state, rest) + servo_.friction(state.dq, kUsualFrictionRise);
-  const Eigen::VectorXd predicted = model_.massMatrix(state.q).llt().solve(torque - bias);
+  Eigen::MatrixXd mass = model_.massMatrix(state.q);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    mass(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += joints[i].motor_inertia;
+  }
+  const Eigen::VectorXd predicted = mass.llt().solve(torque - bias);
   Eigen::VectorXd allowed = predicted;
   const double most = configuration_.max_acceleration;
   // This law sees one tick ahead and knows no stiction: it is stiff, and keeps half the deceleration and a part of the

@@ -17,7 +17,12 @@ Eigen::VectorXd JointServo::trackingTorque(const VelocityReference& reference, c
 }
 
 Eigen::VectorXd JointServo::inverseDynamics(const ArmState& state, const Eigen::VectorXd& acceleration) const {
-  return model_.inverseDynamics(state.q, state.dq, acceleration);
+  Eigen::VectorXd torque = model_.inverseDynamics(state.q, state.dq, acceleration);
+  for (std::size_t i = 0; i < joints().size(); ++i) {
+    const auto j = static_cast<Eigen::Index>(i);
+    torque[j] += joints()[i].motor_inertia * acceleration[j];
+  }
+  return torque;
 }
 
 Eigen::VectorXd JointServo::friction(const Eigen::VectorXd& velocity, double rise) const {

@@ -12,7 +12,7 @@
 namespace demo_logger {
 
 /// Motor torques from what the joints shall do:
-///   τ = M(q) (v̇_ref + k (v_ref − q̇)) + C(q, q̇) q̇ + g(q) + friction(v_ref)
+///   τ = (M(q) + B) (v̇_ref + k (v_ref − q̇)) + C(q, q̇) q̇ + g(q) + friction(v_ref)
 /// each part of the sum in the bracket within the acceleration limit.
 class JointServo {
  public:
@@ -22,7 +22,7 @@ class JointServo {
   /// comes nearer to a position; large, an arm at rest is held by its own stiction, not by a motor that chatters.
   Eigen::VectorXd trackingTorque(const VelocityReference& reference, const ArmState& state, double friction_rise) const;
 
-  /// C(q, q̇) q̇ + g(q) + M(q) q̈
+  /// (M(q) + B) q̈ + C(q, q̇) q̇ + g(q), B the inertia of the motors
   Eigen::VectorXd inverseDynamics(const ArmState& state, const Eigen::VectorXd& acceleration) const;
   Eigen::VectorXd friction(const Eigen::VectorXd& velocity, double rise) const;
 
