@@ -1,0 +1,176 @@
+#include "random_snap_filter.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+
+namespace demo_logger {
+namespace {
+
+constexpr std::size_t kOrder = 4;
+constexpr std::size_t kKnownAfter = 8;  // samples measured, and a time constant
+constexpr double kPi = 3.14159265358979323846;
+
+/// The inverse of a positive definite matrix whose entries may differ by many orders of magnitude.
+Eigen::Matrix4d inverseOf(const Eigen::Matrix4d& matrix) {
+  const Eigen::Vector4d scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::Matrix4d scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  const Eigen::Matrix4d inverse = scaled.ldlt().solve(Eigen::Matrix4d::Identity());
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
+}
+
+Eigen::Matrix4d symmetric(const Eigen::Matrix4d& matrix) { return 0.5 * (matrix + matrix.transpose()); }
+
+}  // namespace
+
+RandomSnapFilter::RandomSnapFilter(const std::vector<double>& time, const Eigen::VectorXd& position, double interval,
+                                   double time_constant)
+    : time_(time), position_(position), interval_(interval), T_(time_constant) {}
+
+RandomSnapFilter::Matrix RandomSnapFilter::transition(double duration) const {
+  const double d = duration / T_;
+  Matrix F = Matrix::Identity();
+  F(0, 1) = F(1, 2) = F(2, 3) = d;
+  F(0, 2) = F(1, 3) = d * d / 2.0;
+  F(0, 3) = d * d * d / 6.0;
+  return F;
+}
+
+/// ∫ φ φᵀ ds over the duration in units of T, φ = (s³/6, s²/2, s, 1), times the density, which is Δt/T by T's
+/// definition.
+RandomSnapFilter::Matrix RandomSnapFilter::processNoise(double duration) const {
+  const double d = duration / T_;
+  const double d2 = d * d;
+  const double d3 = d2 * d;
+  const double d4 = d2 * d2;
+  Matrix Q;
+  Q << d4 * d2 / 252.0, d4 * d / 72.0, d4 / 30.0, d3 / 24.0,  //
+      d4 * d / 72.0, d4 / 20.0, d3 / 8.0, d2 / 6.0,           //
+      d4 / 30.0, d3 / 8.0, d2 / 3.0, d / 2.0,                 //
+      d3 / 24.0, d2 / 6.0, d / 2.0, 1.0;
+  return interval_ / T_ * d * Q;
+}
+
+void RandomSnapFilter::predict(Knowledge& knowledge, double duration) const {
+  if (!knowledge.is_information) {
+    const Matrix F = transition(duration);
+    const Matrix moved = F * knowledge.matrix;
+    knowledge.vector = F * knowledge.vector;
+    knowledge.matrix = processNoise(duration);
+    knowledge.matrix.noalias() += moved * F.transpose();
+    return;
+  }
+  // With A = F⁻ᵀ Y F⁻¹:  (A⁻¹ + Q)⁻¹ = (1 + A Q)⁻¹ A, which needs no inverse of Y.
+  const Matrix back = transition(-duration);
+  const Matrix A = back.transpose() * knowledge.matrix * back;
+  const Eigen::PartialPivLU<Matrix> blurred(Matrix::Identity() + A * processNoise(duration));
+  knowledge.matrix = symmetric(blurred.solve(A));
+  knowledge.vector = blurred.solve(back.transpose() * knowledge.vector);
+}
+
+void RandomSnapFilter::measure(Knowledge& knowledge, double position, std::size_t count) {
+  if (!knowledge.is_information) {
+    const double innovation = position - knowledge.vector[0];
+    const double variance = knowledge.matrix(0, 0) + 1.0;
+    addUp(innovation, variance);
+    const Vector gain = knowledge.matrix.col(0) / variance;
+    const Eigen::RowVector4d row = knowledge.matrix.row(0);
+    knowledge.vector += gain * innovation;
+    knowledge.matrix.noalias() -= gain * row;
+    return;
+  }
+  if (count >= kOrder) {  // before that, any cubic goes through the samples
+    const Matrix P = inverseOf(knowledge.matrix);
+    addUp(position - P.row(0).dot(knowledge.vector), P(0, 0) + 1.0);
+  }
+  knowledge.matrix(0, 0) += 1.0;
+  knowledge.vector[0] += position;
+}
+
+void RandomSnapFilter::addUp(double innovation, double variance) {
+  ++innovations_;
+  squares_ += innovation * innovation / variance;
+  logarithms_ += std::log(variance);
+}
+
+template <typename Visit>
+void RandomSnapFilter::filter(std::size_t first, std::size_t last, const Visit& visit) {
+  Knowledge knowledge;
+  std::size_t measured = 0;
+  for (std::size_t k = first; k < last; ++k) {
+    if (k > first) predict(knowledge, time_[k] - time_[k - 1]);
+    const double position = position_[static_cast<Eigen::Index>(k)];
+    if (!std::isnan(position)) measure(knowledge, position, measured++);
+    if (knowledge.is_information && measured >= kKnownAfter && time_[k] - time_[first] > T_) {
+      knowledge.is_information = false;
+      knowledge.matrix = inverseOf(knowledge.matrix);
+      knowledge.vector = knowledge.matrix * knowledge.vector;
+    }
+    visit(k, knowledge);
+  }
+}
+
+void RandomSnapFilter::run(std::size_t first, std::size_t last) {
+  filter(first, last, [](std::size_t, const Knowledge&) {});
+}
+
+double RandomSnapFilter::variance() const { return squares_ / static_cast<double>(innovations_); }
+
+double RandomSnapFilter::logLikelihood() const {
+  const auto n = static_cast<double>(innovations_);
+  return -0.5 * (n * std::log(2.0 * kPi * variance()) + n + logarithms_);
+}
+
+SmoothedMotion RandomSnapFilter::smooth() {
+  const std::size_t count = time_.size();
+  std::vector<Knowledge> until(count);  // each sample, and with it
+  filter(0, count, [&](std::size_t k, const Knowledge& knowledge) { until[k] = knowledge; });
+
+  SmoothedMotion motion;
+  const double r = variance();
+  motion.measurement_deviation = std::sqrt(r);
+  motion.snap_density = r * interval_ / std::pow(T_, 8);
+  motion.time_constant = T_;
+  motion.log_likelihood = logLikelihood();
+  const auto rows = static_cast<Eigen::Index>(count);
+  motion.position.resize(rows);
+  motion.velocity.resize(rows);
+  motion.acceleration.resize(rows);
+  motion.covariance.resize(count);
+
+  const Eigen::Vector3d units(1.0, 1.0 / T_, 1.0 / (T_ * T_));
+  Matrix Y = Matrix::Zero();  // what the samples after k say
+  Vector y = Vector::Zero();
+  for (std::size_t k = count; k-- > 0;) {
+    const auto& [is_information, matrix, vector] = until[k];
+    Matrix P;
+    Vector state;
+    if (is_information) {
+      P = inverseOf(matrix + Y);
+      state = P * (vector + y);
+    } else {
+      const Eigen::PartialPivLU<Matrix> together(Matrix::Identity() + matrix * Y);
+      P = together.solve(matrix);
+      state = together.solve(vector + matrix * y);
+    }
+    const auto row = static_cast<Eigen::Index>(k);
+    motion.position[row] = state[0];
+    motion.velocity[row] = units[1] * state[1];
+    motion.acceleration[row] = units[2] * state[2];
+    motion.covariance[k] = r * units.asDiagonal() * symmetric(P).topLeftCorner<3, 3>() * units.asDiagonal();
+    if (k == 0) break;
+
+    if (const double position = position_[row]; !std::isnan(position)) {
+      Y(0, 0) += 1.0;
+      y[0] += position;
+    }
+    const double duration = time_[k] - time_[k - 1];
+    const Matrix F = transition(duration);
+    const Eigen::PartialPivLU<Matrix> blurred(Matrix::Identity() + Y * processNoise(duration));
+    y = F.transpose() * blurred.solve(y);
+    Y = symmetric(F.transpose() * blurred.solve(Y) * F);
+  }
+  return motion;
+}
+
+}  // namespace demo_logger

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "demo_logger/trajectory/motion_smoother.h"
+
+namespace demo_logger {
+
+/// The Kalman filter and smoother behind smoothMotion, for one time constant T. Its state holds the derivatives in
+/// units of T, ξ_i = Tⁱ dⁱq/dtⁱ, and its covariances are in units of the measurement's variance r, so that a fast and
+/// noisy record gives it numbers as well scaled as a slow and quiet one.
+///
+/// While little is known, knowledge is kept as information Y = P⁻¹, y = Y ξ: at first both are zero. The covariance P,
+/// which is cheaper, takes over when a time constant has been seen. What the later samples say about an instant is
+/// information too; together they give the smoothed motion (Fraser and Potter 1969), without any difference of large
+/// numbers.
+class RandomSnapFilter {
+ public:
+  /// References are kept. `interval` is the usual one Δt [s].
+  RandomSnapFilter(const std::vector<double>& time, const Eigen::VectorXd& position, double interval,
+                   double time_constant);
+
+  /// Runs over samples [first, last) and adds up what the likelihood needs.
+  void run(std::size_t first, std::size_t last);
+
+  /// Both as the samples filtered so far say. `variance` is the most likely r for this T.
+  double variance() const;
+  double logLikelihood() const;
+
+  /// Runs over everything, then smooths.
+  SmoothedMotion smooth();
+
+ private:
+  using Vector = Eigen::Vector4d;
+  using Matrix = Eigen::Matrix4d;
+
+  /// What is known of the state: (Y, y) or (P, ξ).
+  struct Knowledge {
+    bool is_information = true;
+    Matrix matrix = Matrix::Zero();
+    Vector vector = Vector::Zero();
+  };
+
+  /// Calls visit(k, knowledge) after each sample k of [first, last).
+  template <typename Visit>
+  void filter(std::size_t first, std::size_t last, const Visit& visit);
+  void predict(Knowledge& knowledge, double duration) const;
+  /// `count`: how many samples were measured before.
+  void measure(Knowledge& knowledge, double position, std::size_t count);
+  void addUp(double innovation, double variance);
+
+  Matrix transition(double duration) const;
+  Matrix processNoise(double duration) const;
+
+  const std::vector<double>& time_;
+  const Eigen::VectorXd& position_;
+  const double interval_;
+  const double T_;
+
+  std::size_t innovations_ = 0;
+  double squares_ = 0.0;     // Σ e² / s
+  double logarithms_ = 0.0;  // Σ ln s
+};
+
+}  // namespace demo_logger
