@@ -1,16 +1,25 @@
 #!/bin/bash
-# Builds the measurements and runs them: writes doc/benchmarks/{recording_cost,synchronisation_error}.md with the machine and the date.
+# Builds the measurements and runs them: writes doc/benchmarks/{recording_cost,synchronisation_error,robot_model}.md with
+# the machine and the date.
 set -euo pipefail
 if [ "${1:-}" = --help ]; then
-  echo "usage: bench/run.sh [recording_cost|synchronisation_error] [options of recording_cost.py]"
-  echo "Needs what scripts/test.sh installs. About 15 minutes for all; without a name it runs both."
+  echo "usage: bench/run.sh [recording_cost|synchronisation_error|robot_model] [options of recording_cost.py or robot_model.py]"
+  echo "Needs what scripts/test.sh installs. About 15 minutes for all; without a name it runs all."
+  echo "robot_model takes --pinocchio PYTHON (one with the module pinocchio) and arms from the folder DEMO_LOGGER_URDF."
   exit 0
 fi
 project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 which=${1:-all}
 [ $# -eq 0 ] || shift
+[ "$which" != all ] || set --
+targets=()
+case $which in
+  all | recording_cost) ;;
+  synchronisation_error | robot_model) targets=(--target "$which") ;;
+  *) echo "run.sh: unknown measurement \"$which\"; --help shows what there is" >&2; exit 2 ;;
+esac
 cmake -S "$project" -B "$project/build" -DDEMO_LOGGER_BENCH=ON >/dev/null
-cmake --build "$project/build" -j "$(nproc)" >/dev/null
+cmake --build "$project/build" -j "$(nproc)" ${targets[@]+"${targets[@]}"} >/dev/null
 set +u
 . "$project/devel/setup.bash"
 set -u
@@ -33,10 +42,14 @@ measure() {  # title, output, command …
 }
 
 mkdir -p "$project/doc/benchmarks"
-if [ "$which" != recording_cost ]; then
+if [ "$which" = all ] || [ "$which" = synchronisation_error ]; then
   measure "Synchronisation error against truth" "$project/doc/benchmarks/synchronisation_error.md" "$programs/synchronisation_error"
 fi
-if [ "$which" != synchronisation_error ]; then
+if [ "$which" = all ] || [ "$which" = robot_model ]; then
+  measure "Inverse dynamics: cost and agreement" "$project/doc/benchmarks/robot_model.md" \
+    /usr/bin/python3 "$project/bench/robot_model.py" "$programs" "$@"
+fi
+if [ "$which" = all ] || [ "$which" = recording_cost ]; then
   measure "What recording costs and loses" "$project/doc/benchmarks/recording_cost.md" \
     /usr/bin/python3 "$project/bench/recording_cost.py" "$programs" "$@"
 fi
