@@ -12,6 +12,7 @@
 #include "path_follower.h"
 #include "print.h"
 #include "reasons.h"
+#include "snapshot.h"
 #include "twist_resolution.h"
 #include "velocity_reference.h"
 
@@ -110,6 +111,18 @@ class ArmController::Implementation {
     reference_.follow(Eigen::VectorXd::Zero(model_.size()));
     follower_.clear();
     gate_.reset();
+  }
+
+  void setDescription(const RobotDescription& description) { model_ = RobotModel(description); }
+
+  void exchange(Snapshot& snapshot) {
+    std::string mode = toString(mode_);
+    snapshot.value("mode", mode);
+    mode_ = toControlMode(mode);
+    snapshot.part("gate", [&](Snapshot& inside) { gate_.exchange(inside); });
+    snapshot.part("path", [&](Snapshot& inside) { follower_.exchange(inside); });
+    snapshot.part("reference", [&](Snapshot& inside) { reference_.exchange(inside); });
+    snapshot.value("refused", refused_);
   }
 
   const ArmControllerConfiguration& configuration() const { return configuration_; }
@@ -285,6 +298,10 @@ const ArmControllerConfiguration& ArmController::configuration() const { return 
 ControlMode ArmController::mode() const { return implementation_->mode(); }
 void ArmController::setMode(ControlMode mode) { implementation_->setMode(mode); }
 void ArmController::reset() { implementation_->reset(); }
+void ArmController::setDescription(const RobotDescription& description) {
+  implementation_->setDescription(description);
+}
+void ArmController::exchange(Snapshot& snapshot) { implementation_->exchange(snapshot); }
 std::uint64_t ArmController::refusedCommands() const { return implementation_->refused(); }
 std::vector<std::string> ArmController::clockMismatches() const { return implementation_->clockMismatches(); }
 

@@ -91,6 +91,17 @@ BulletArm::~BulletArm() = default;
 
 void BulletArm::reset(const ArmState& state) { implementation_->reset(state); }
 
+void BulletArm::restore(const ArmState& state, const Eigen::VectorXd& link_torque) {
+  Implementation& own = *implementation_;
+  own.check("q", state.q);
+  own.check("dq", state.dq);
+  if (link_torque.size() != 0) own.check("link torque", link_torque);
+  own.state = state;
+  own.friction.setZero();
+  own.link_torque = link_torque;
+  own.contacts.clear();
+}
+
 const ArmState& BulletArm::state() const { return implementation_->state; }
 
 void BulletArm::setDescription(const RobotDescription& description) {

@@ -7,6 +7,7 @@
 
 #include "demo_logger/trajectory/error.h"
 #include "print.h"
+#include "snapshot.h"
 
 namespace demo_logger {
 namespace {
@@ -208,6 +209,22 @@ void CommandGate::clear(const std::string& why) {
 void CommandGate::reset() {
   clocks_.clear();
   clear("no command yet");
+}
+
+void CommandGate::exchange(Snapshot& snapshot) {
+  std::vector<std::string> sources;
+  for (const auto& clock : clocks_) sources.push_back(clock.first);
+  snapshot.value("sources", sources);
+  snapshot.part("clocks", [&](Snapshot& inside) {
+    if (inside.reading()) clocks_.clear();
+    for (const std::string& source : sources) {
+      inside.part(source, [&](Snapshot& clock) { clocks_[source].exchange(clock); });
+    }
+  });
+  snapshot.optional("command", command_,
+                    [](Snapshot& inside, ArmCommand& command) { inside.command("in_force", command); });
+  snapshot.stamp("receipt", receipt_);
+  snapshot.value("why_none", why_none_);
 }
 
 std::vector<std::string> CommandGate::clockMismatches() const {

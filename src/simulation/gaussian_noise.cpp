@@ -1,6 +1,10 @@
 #include "demo_logger/simulation/gaussian_noise.h"
 
 #include <cmath>
+#include <locale>
+#include <sstream>
+
+#include "snapshot.h"
 
 namespace demo_logger {
 namespace {
@@ -17,6 +21,16 @@ double GaussianNoise::uniform(double lower, double upper) {
 double GaussianNoise::next() {  // Box and Muller's transform; its second number is not worth the memory
   const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(0.0, 1.0)));
   return radius * std::cos(uniform(0.0, kTwoPi));
+}
+
+void GaussianNoise::exchange(Snapshot& snapshot) {
+  std::stringstream numbers;  // the standard says how a generator writes itself, and that it reads itself back
+  numbers.imbue(std::locale::classic());
+  numbers << generator_;
+  std::string text = numbers.str();
+  snapshot.value("generator", text);
+  numbers.str(text);
+  numbers >> generator_;
 }
 
 }  // namespace demo_logger

@@ -15,11 +15,13 @@ namespace demo_logger {
 /// it is there, and after the last one it rests there.
 class JointPath {
  public:
+  JointPath() = default;
   /// At least one point; times strictly increasing; all of the same size.
   explicit JointPath(std::vector<PathPoint> points);
 
   double duration() const { return points_.back().time; }
   PathPoint at(double time) const;
+  const std::vector<PathPoint>& points() const { return points_; }
 
   /// Why these joints cannot follow, looked at in up to 32 places of every segment; empty if they can. Straight
   /// segments meet at corners, which are not judged: the arm rounds them.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "print.h"
+#include "snapshot.h"
 
 namespace demo_logger {
 namespace {
@@ -92,6 +93,17 @@ std::optional<PathPoint> PathFollower::at(Nanoseconds time) const {
 void PathFollower::clear() {
   active_.reset();
   waiting_.reset();
+}
+
+void PathFollower::exchange(Snapshot& snapshot) {
+  const auto exchangeTimed = [](Snapshot& inside, Timed& timed) {
+    std::vector<PathPoint> points = timed.path.points();
+    inside.path("points", points);
+    timed.path = JointPath(std::move(points));
+    inside.stamp("start", timed.start);
+  };
+  snapshot.optional("active", active_, exchangeTimed);
+  snapshot.optional("waiting", waiting_, exchangeTimed);
 }
 
 }  // namespace demo_logger

@@ -9,6 +9,8 @@
 
 namespace demo_logger {
 
+class Snapshot;
+
 /// Keeps the path in force and the one that waits for its start. A new path replaces what was there before, from its
 /// own start on. It begins where the arm is meant to be then: its first point either lies in time after the start, and
 /// the way there is part of the path, or is where the arm is.
@@ -28,10 +30,12 @@ class PathFollower {
 
   void clear();
 
+  void exchange(Snapshot& snapshot);
+
  private:
   struct Timed {
     JointPath path;
-    Nanoseconds start;
+    Nanoseconds start = 0;
   };
   std::vector<ArmJoint> joints_;
   double max_acceleration_;

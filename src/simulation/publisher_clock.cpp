@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "snapshot.h"
+
 namespace demo_logger {
 namespace {
 
@@ -30,6 +32,14 @@ void PublisherClock::observe(Nanoseconds stamp, Nanoseconds receipt) {
   const bool is_transport = *middle >= kShortestTransport && *middle <= kLongestTransport;
   offset_ = is_transport ? 0 : *middle;
   delays_.clear();
+}
+
+/// Stamps and receipts of later messages are both by a moved clock, so that delays stay as they are.
+void PublisherClock::exchange(Snapshot& snapshot) {
+  snapshot.value("delays", delays_);
+  snapshot.stamp("first_receipt", first_receipt_);
+  snapshot.optional("offset", offset_, [](Snapshot& inside, Nanoseconds& offset) { inside.value("ns", offset); });
+  snapshot.value("from_the_future", from_the_future_);
 }
 
 }  // namespace demo_logger

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "print.h"
+#include "snapshot.h"
 
 namespace demo_logger {
 namespace {
@@ -78,6 +79,11 @@ void VelocityReference::step(const Eigen::VectorXd& target, const ArmState& stat
 void VelocityReference::follow(const Eigen::VectorXd& velocity) {
   velocity_ = velocity;
   acceleration_.setZero();
+}
+
+void VelocityReference::exchange(Snapshot& snapshot) {
+  snapshot.value("velocity", velocity_);
+  snapshot.value("acceleration", acceleration_);
 }
 
 void VelocityReference::explain(std::size_t joint, bool above, Reasons& reasons) const {

@@ -9,6 +9,8 @@
 
 namespace demo_logger {
 
+class Snapshot;
+
 /// The joint velocity v_ref that the arm is made to follow: goes after a target within the limits on velocity,
 /// acceleration and position.
 class VelocityReference {
@@ -21,6 +23,8 @@ class VelocityReference {
 
   /// The arm is moved by something else: stay with it.
   void follow(const Eigen::VectorXd& velocity);
+
+  void exchange(Snapshot& snapshot);
 
   const Eigen::VectorXd& velocity() const { return velocity_; }
   const Eigen::VectorXd& acceleration() const { return acceleration_; }

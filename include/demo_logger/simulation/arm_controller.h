@@ -12,6 +12,8 @@
 
 namespace demo_logger {
 
+class Snapshot;
+
 struct ArmControllerConfiguration {
   double control_period = 0.001;            // [s]
   double command_timeout = 0.5;             // [s] age of a command, by receipt or by stamp, at which the arm brakes
@@ -61,8 +63,13 @@ class ArmController {
   /// came in since the last tick. `now` must not decrease.
   AppliedControl tick(Nanoseconds now, const ArmState& state, const std::vector<ArmCommand>& commands);
 
+  /// The same arm with other masses: a load that the controller knows of.
+  void setDescription(const RobotDescription& description);
+
   /// The reference at rest, no command in force, publishers' clocks unknown, as after construction.
   void reset();
+
+  void exchange(Snapshot& snapshot);
 
   std::uint64_t refusedCommands() const;
   std::vector<std::string> clockMismatches() const;

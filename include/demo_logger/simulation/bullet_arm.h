@@ -65,6 +65,8 @@ class BulletArm {
   /// finite, the size is wrong, or a position is outside its joint's limits.
   void reset(const ArmState& state);
   const ArmState& state() const;
+  /// As reset(), but goes on with what linkTorque() was, and takes whatever state a step can lead to.
+  void restore(const ArmState& state, const Eigen::VectorXd& link_torque);
 
   /// The same arm in the same state with other masses: a load taken or put down.
   void setDescription(const RobotDescription& description);

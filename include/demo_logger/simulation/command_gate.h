@@ -11,6 +11,8 @@
 
 namespace demo_logger {
 
+class Snapshot;
+
 /// Lets a sound command in and keeps it in force until it is replaced or too old. It is too old when either its age
 /// since receipt or its age by stamp, corrected by the offset of its publisher's clock, exceeds the timeout: the first
 /// guards against a publisher that died, the second against one whose messages are stuck on the way. A path is in force
@@ -43,6 +45,8 @@ class CommandGate {
 
   /// As it was when it was made.
   void reset();
+
+  void exchange(Snapshot& snapshot);
 
   /// Publishers whose clock differs from this one: "/teleop: stamps are 5 s behind this clock (transport or skew)".
   std::vector<std::string> clockMismatches() const;

@@ -7,6 +7,8 @@
 
 namespace demo_logger {
 
+class Snapshot;
+
 /// How far a publisher's clock is behind this one, judged from its messages: the median of receipt − stamp over the
 /// first second, and at least five of them, then frozen. Within [−20 ms, 100 ms] it is taken for transport, and the
 /// clocks for equal. A constant delay on the way cannot be told from a clock that is behind; but nothing comes from the
@@ -18,6 +20,8 @@ class PublisherClock {
 
   /// Nothing until it is frozen; zero for clocks taken for equal.
   std::optional<Nanoseconds> offset() const { return offset_; }
+
+  void exchange(Snapshot& snapshot);
 
  private:
   std::vector<Nanoseconds> delays_;
