@@ -3,7 +3,10 @@
 #include <rosgraph_msgs/Clock.h>
 
 #include <chrono>
+#include <fstream>
 #include <functional>
+#include <iostream>
+#include <sstream>
 #include <thread>
 #include <utility>
 
@@ -13,11 +16,9 @@
 namespace demo_logger {
 namespace {
 
-constexpr std::uint32_t kQueue = 2000;       // messages out, 2 s of control ticks: for a recorder that stalls
-constexpr std::size_t kInbox = 1000;         // commands in, between two ticks
-constexpr double kDiagnosticsPeriod = 1.0;   // [s]
-constexpr double kRefusalLogPeriod = 5.0;    // [s]
-constexpr double kToleratedOverruns = 0.01;  // of the ticks
+constexpr std::uint32_t kQueue = 2000;     // messages out, 2 s of control ticks: for a recorder that stalls
+constexpr std::size_t kInbox = 1000;       // commands in, between two ticks
+constexpr double kRefusalLogPeriod = 5.0;  // [s]
 
 ros::Time toRos(Nanoseconds stamp) { return ros::Time().fromNSec(static_cast<std::uint64_t>(stamp)); }
 
@@ -32,17 +33,32 @@ void sleepUntil(Nanoseconds steady) {
   std::this_thread::sleep_until(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(steady)));
 }
 
+std::string readFile(const std::string& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  if (!file) throw FileError(path + " cannot be read; initial_state names a file that ~save_state wrote.");
+  return text.str();
+}
+
 std::vector<double> toVector(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
 
 }  // namespace
 
 SimulatedArmNode::SimulatedArmNode(ros::NodeHandle node, ros::NodeHandle private_node,
                                    const SimulatedArmParameters& parameters)
-    : parameters_(parameters), arm_(parameters.robot, parameters.arm), applied_message_(new AppliedCommand) {
-  joint_state_message_.name = parameters_.robot.jointNames();
+    : parameters_(parameters),
+      arm_(parameters.robot, parameters.arm),
+      faults_(parameters.faults, parameters.robot.jointNames()),
+      applied_message_(new AppliedCommand) {
+  for (const AttachedLink& link : parameters_.links) links_[link.name] = link;
+  if (parameters_.load) arm_.setLoad(parameters_.load);
+  restoreState(std::nullopt);
+  truth_message_.name = parameters_.robot.jointNames();
   joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", kQueue);
   applied_command_ = node.advertise<AppliedCommand>("applied_command", kQueue);
   ground_truth_ = node.advertise<sensor_msgs::JointState>("ground_truth/joint_states", kQueue);
+  external_torque_ = node.advertise<sensor_msgs::JointState>("ground_truth/human_torque", kQueue);
   if (parameters_.clock.own_time) clock_ = node.advertise<rosgraph_msgs::Clock>("/clock", kQueue);
 
   subscribers_.push_back(node.subscribe<topic_tools::ShapeShifter>(
@@ -58,20 +74,12 @@ SimulatedArmNode::SimulatedArmNode(ros::NodeHandle node, ros::NodeHandle private
   subscribe<trajectory_msgs::JointTrajectory>(
       node, "joint_trajectory", [](const trajectory_msgs::JointTrajectory& message) { return toArmCommand(message); });
 
-  services_.push_back(private_node.advertiseService("set_control_mode", &SimulatedArmNode::setControlMode, this));
-  services_.push_back(private_node.advertiseService("reset_simulation", &SimulatedArmNode::reset, this));
-  using Empty = std_srvs::Empty;
-  for (const bool paused : {true, false}) {
-    services_.push_back(private_node.advertiseService<Empty::Request, Empty::Response>(
-        paused ? "pause_physics" : "unpause_physics",
-        [this, paused](Empty::Request&, Empty::Response&) { return setPaused(paused); }));
-  }
+  subscribers_.push_back(node.subscribe<geometry_msgs::WrenchStamped>(
+      "human_wrench", kQueue,
+      boost::function<void(const WrenchEvent&)>([this](const WrenchEvent& e) { receiveWrench(e); })));
 
-  diagnostics_.setHardwareID("simulated " + parameters_.robot.name);
-  diagnostics_.add("control loop", this, &SimulatedArmNode::diagnoseLoop);
-  diagnostics_.add("commands", this, &SimulatedArmNode::diagnoseCommands);
-  diagnostics_timer_ = node.createWallTimer(ros::WallDuration(kDiagnosticsPeriod),
-                                            [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
+  advertiseServices(private_node);
+  startDiagnostics(node);
 }
 
 template <typename Message>
@@ -98,6 +106,25 @@ void SimulatedArmNode::receiveTwist(const TwistEvent& event) {
   }
 }
 
+/// A wrench at the origin of its frame, in its axes; without a frame, of the tip.
+void SimulatedArmNode::receiveWrench(const WrenchEvent& event) {
+  const geometry_msgs::WrenchStamped& message = *event.getMessage();
+  const std::string& frame = message.header.frame_id;
+  SentWrench sent;
+  sent.source = event.getPublisherName();
+  sent.duration = fromSeconds(parameters_.wrench_timeout);
+  const auto [wrench, why] = wrenchUpon(frame.empty() ? parameters_.robot.tip : frame, message.wrench, true);
+  sent.wrench = wrench;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (inbox_.wrenches.size() + inbox_.refusals.size() >= kInbox) {
+    ++inbox_.dropped;
+  } else if (!why.empty()) {
+    inbox_.refusals.emplace_back(sent.source, why);
+  } else {
+    inbox_.wrenches.push_back(std::move(sent));
+  }
+}
+
 void SimulatedArmNode::put(ArmCommand command, const std::string& source) {
   command.source = source;
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -108,44 +135,23 @@ void SimulatedArmNode::put(ArmCommand command, const std::string& source) {
   inbox_.commands.push_back(std::move(command));
 }
 
-bool SimulatedArmNode::setControlMode(SetControlMode::Request& request, SetControlMode::Response& response) {
-  response.success = 0U;
+/// A clock of its own goes on from the saved state too; the ROS clock shows another time, to which the state is moved
+/// once the first tick's stamp is known.
+void SimulatedArmNode::restoreState(std::optional<Nanoseconds> next) {
+  if (parameters_.initial_state.empty()) return;
   try {
-    const ControlMode mode = toControlMode(request.mode);
-    if (!request.stiffness.empty() || !request.damping.empty()) {
-      response.message = "mode " + request.mode + " takes neither stiffness nor damping, expected both empty.";
-      return true;
-    }
-    const std::lock_guard<std::mutex> lock(mutex_);
-    inbox_.mode = mode;
+    arm_.restoreState(readFile(parameters_.initial_state), next);
   } catch (const ConfigurationError& error) {
-    response.message = error.what();
-    return true;
+    throw ConfigurationError(parameters_.initial_state + ": " + error.what());
   }
-  response.success = 1U;
-  response.message = "mode " + request.mode + " is in force from the next control tick on.";
-  return true;
-}
-
-bool SimulatedArmNode::reset(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  inbox_.reset = true;
-  response.success = 1U;
-  response.message = "the arm is back in its initial position from the next control tick on.";
-  return true;
-}
-
-bool SimulatedArmNode::setPaused(bool paused) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  paused_ = paused;
-  report_.paused = paused;
-  return true;
+  if (parameters_.clock.own_time) parameters_.clock.first_stamp = arm_.nextTick();
 }
 
 void SimulatedArmNode::run() {
   ros::AsyncSpinner spinner(1);
   spinner.start();
   TickClock clock(parameters_.clock, steadyNow(), rosNow());
+  if (!parameters_.clock.own_time) restoreState(clock.stamp());
   bool was_paused = false;
   while (ros::ok()) {
     bool paused = false;
@@ -155,6 +161,7 @@ void SimulatedArmNode::run() {
     }
     if (paused) {
       was_paused = true;
+      answerStateRequests();
       sleepUntil(steadyNow() + parameters_.clock.period);
       continue;
     }
@@ -163,6 +170,9 @@ void SimulatedArmNode::run() {
     tick(clock);
   }
   spinner.stop();
+  // ROS says nothing any more.
+  std::cout << "simulated arm: " << report_.ticks << " control ticks, " << clock.overruns()
+            << " of them started more than a period late; " << clock.jumps() << " stalls or clock jumps" << std::endl;
 }
 
 SimulatedArmNode::Inbox SimulatedArmNode::takeInbox() {
@@ -171,17 +181,30 @@ SimulatedArmNode::Inbox SimulatedArmNode::takeInbox() {
 }
 
 void SimulatedArmNode::tick(TickClock& clock) {
+  answerStateRequests();
   const Inbox inbox = takeInbox();
   if (inbox.mode) arm_.setMode(*inbox.mode);
+  if (inbox.load) arm_.setLoad(*inbox.load);
   if (inbox.reset) arm_.reset();
-  const std::uint64_t refused = arm_.controller().refusedCommands();
-  const ArmTick tick = arm_.tick(clock.stamp(), inbox.commands);
-  if (arm_.controller().refusedCommands() != refused) {
-    ROS_WARN_STREAM_THROTTLE(kRefusalLogPeriod, tick.applied.reason);
+  const std::uint64_t refused = arm_.refused();
+  for (const auto& [source, why] : inbox.refusals) arm_.refuse(source, why);
+  for (const SentWrench& sent : inbox.wrenches) {
+    const std::string why = arm_.applyWrench(sent.wrench, clock.stamp() + sent.duration, sent.source);
+    if (!why.empty()) arm_.refuse(sent.source, why);
   }
+  const ArmTick tick = arm_.tick(clock.stamp(), inbox.commands);
+  if (arm_.refused() != refused) ROS_WARN_STREAM_THROTTLE(kRefusalLogPeriod, tick.applied.reason);
   publish(tick);
   clock.advance(steadyNow(), rosNow());
   report(clock, tick, inbox.dropped);
+}
+
+void SimulatedArmNode::answerStateRequests() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!state_wanted_) return;
+  state_wanted_ = false;
+  state_ = arm_.saveState();
+  state_saved_.notify_all();
 }
 
 void SimulatedArmNode::publish(const ArmTick& tick) {
@@ -192,15 +215,26 @@ void SimulatedArmNode::publish(const ArmTick& tick) {
       now.clock = stamp;
       clock_.publish(now);
     }
-    joint_state_message_.header.stamp = stamp;
-    joint_state_message_.position = toVector(tick.reading.q);
-    joint_state_message_.velocity = toVector(tick.reading.dq);
-    joint_state_message_.effort = toVector(tick.reading.effort);
-    joint_states_.publish(joint_state_message_);
-    joint_state_message_.position = toVector(tick.truth.q);
-    joint_state_message_.velocity = toVector(tick.truth.dq);
-    joint_state_message_.effort = toVector(tick.applied.torque);
-    ground_truth_.publish(joint_state_message_);
+    faults_.offer(tick.stamp, tick.reading);
+    truth_message_.header.stamp = stamp;
+    truth_message_.position = toVector(tick.truth.q);
+    truth_message_.velocity = toVector(tick.truth.dq);
+    truth_message_.effort = toVector(tick.applied.torque);
+    ground_truth_.publish(truth_message_);
+    sensor_msgs::JointState external;
+    external.header.stamp = stamp;
+    external.name = truth_message_.name;
+    external.effort = toVector(tick.external_torque);
+    external_torque_.publish(external);
+  }
+  for (const JointStateMessage& due : faults_.take(tick.stamp)) {
+    sensor_msgs::JointState message;
+    message.header.stamp = toRos(due.stamp);
+    message.name = due.names;
+    message.position = toVector(due.reading.q);
+    message.velocity = toVector(due.reading.dq);
+    message.effort = toVector(due.reading.effort);
+    joint_states_.publish(message);
   }
   applied_message_->header.stamp = stamp;
   applied_message_->header.frame_id = parameters_.robot.base;
@@ -211,56 +245,6 @@ void SimulatedArmNode::publish(const ArmTick& tick) {
   applied_message_->torque = toVector(tick.applied.torque);
   applied_message_->reason = tick.applied.reason;
   applied_command_.publish(*applied_message_);
-}
-
-void SimulatedArmNode::report(TickClock& clock, const ArmTick& tick, std::uint64_t dropped) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  report_.ticks = tick.index + 1;
-  report_.overruns = clock.overruns();
-  report_.jumps = clock.jumps();
-  report_.largest_delay = std::max(report_.largest_delay, clock.largestDelay());
-  clock.forgetLargestDelay();
-  report_.refused = arm_.controller().refusedCommands();
-  report_.dropped += dropped;
-  report_.mode = toString(tick.applied.mode);
-  report_.reason = tick.applied.reason;
-  report_.clock_mismatches = arm_.controller().clockMismatches();
-}
-
-void SimulatedArmNode::diagnoseLoop(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using Status = diagnostic_msgs::DiagnosticStatus;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  const std::uint64_t ticks = report_.ticks - last_report_.ticks;
-  const std::uint64_t overruns = report_.overruns - last_report_.overruns;
-  if (report_.paused) {
-    status.summary(Status::OK, "paused");
-  } else if (static_cast<double>(overruns) > kToleratedOverruns * static_cast<double>(ticks)) {
-    status.summaryf(Status::WARN, "%lu of the last %lu control ticks started more than a period late", overruns, ticks);
-  } else if (report_.jumps != last_report_.jumps) {
-    status.summary(Status::WARN, "the loop stalled or its clock jumped; simulated time went on from now");
-  } else {
-    status.summary(Status::OK, "in time");
-  }
-  status.add("ticks", report_.ticks);
-  status.add("overruns", report_.overruns);
-  status.add("stalls and clock jumps", report_.jumps);
-  status.add("largest delay of a tick [ms]", toSeconds(report_.largest_delay) * 1e3);
-  report_.largest_delay = 0;
-  last_report_ = report_;
-}
-
-void SimulatedArmNode::diagnoseCommands(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using Status = diagnostic_msgs::DiagnosticStatus;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (report_.clock_mismatches.empty()) {
-    status.summary(Status::OK, report_.reason.empty() ? "as asked" : report_.reason);
-  } else {
-    status.summary(Status::WARN, report_.clock_mismatches.front());
-  }
-  status.add("control mode", report_.mode);
-  status.add("refused", report_.refused);
-  status.add("dropped, more than a tick can take", report_.dropped);
-  for (const std::string& mismatch : report_.clock_mismatches) status.add("clock", mismatch);
 }
 
 }  // namespace demo_logger

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <string>
 
-#include "demo_logger/formats/column_names.h"
 #include "demo_logger/robot/robot_model.h"
 #include "demo_logger/trajectory/error.h"
+#include "joint_columns.h"
 
 namespace demo_logger {
 namespace {
@@ -26,46 +25,17 @@ std::vector<Column> poseColumns(const RobotDescription& robot) {
   return columns;
 }
 
-bool endsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-/// The column of a joint's position, by its source, or without one by its name.
-std::optional<std::size_t> findPosition(const std::vector<Column>& columns, const std::string& joint) {
-  const std::string name = makePortable({"q_" + joint}).names.front();
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const Column& column = columns[i];
-    if (column.role != Role::state) continue;
-    if (column.source.empty() ? column.name == name : endsWith(column.source, "/position/" + joint)) return i;
-  }
-  return std::nullopt;
-}
-
 /// Where each joint's position stands in a row; empty if one is missing.
 std::vector<std::size_t> findPositions(const std::vector<Column>& columns, const std::vector<std::string>& joints) {
   std::vector<std::size_t> positions;
   for (const std::string& joint : joints) {
-    const auto found = findPosition(columns, joint);
+    const auto found = findJointColumn(columns, kPosition, joint);
     if (!found) {
       return {};
     }
     positions.push_back(*found);
   }
   return positions;
-}
-
-void removeColumns(const std::vector<Column>& names, Demonstration& demonstration) {
-  for (const Column& gone : names) {
-    std::vector<Column>& columns = demonstration.columns;
-    const auto found =
-        std::find_if(columns.begin(), columns.end(), [&](const Column& column) { return column.name == gone.name; });
-    if (found == columns.end()) continue;
-    const Eigen::Index at = found - columns.begin();
-    const Eigen::Index behind = demonstration.values.cols() - at - 1;
-    demonstration.values.middleCols(at, behind) = demonstration.values.rightCols(behind).eval();
-    demonstration.values.conservativeResize(Eigen::NoChange, demonstration.values.cols() - 1);
-    columns.erase(found);
-  }
 }
 
 }  // namespace
@@ -117,18 +87,15 @@ void ToolPose::append(Row& row) { implementation_->append(row); }
 
 void addToolPose(const RobotDescription& robot, Demonstration& demonstration) {
   for (const std::string& joint : robot.jointNames()) {
-    if (!findPosition(demonstration.columns, joint)) {
-      throw ConfigurationError("no column `" + makePortable({"q_" + joint}).names.front() +
-                               "` with the position of joint '" + joint + "', which the pose of '" + robot.tip +
-                               "' in '" + robot.base + "' depends on");
+    if (!findJointColumn(demonstration.columns, kPosition, joint)) {
+      throw ConfigurationError("no column `" + jointColumnName(kPosition, joint) + "` with the position of joint '" +
+                               joint + "', which the pose of '" + robot.tip + "' in '" + robot.base + "' depends on");
     }
   }
-  removeColumns(poseColumns(robot), demonstration);
+  const std::vector<Column> added = poseColumns(robot);
+  const Eigen::Index before = replaceColumns(added, demonstration);
   ToolPose tool(robot);
-  const std::vector<Column> added = tool.open(demonstration.columns);
-  const Eigen::Index before = demonstration.values.cols();
-  demonstration.values.conservativeResize(Eigen::NoChange, before + static_cast<Eigen::Index>(added.size()));
-  demonstration.columns.insert(demonstration.columns.end(), added.begin(), added.end());
+  tool.open(demonstration.columns);
   Row row;
   for (Eigen::Index i = 0; i < demonstration.values.rows(); ++i) {
     auto values = demonstration.values.row(i);

@@ -10,7 +10,7 @@ namespace demo_logger {
 ///
 /// Following the ROS clock, stamps are one period apart exactly, and the wake-ups, on the steady clock, are slewed by
 /// up to a thousandth so that stamps stay with the ROS clock although both clocks drift. In a time of its own (`/clock`
-/// mode) stamps count from 1 s, a zero stamp meaning none in ROS, at `speed` times the steady clock.
+/// mode) stamps count from 1 s (or another start), a zero stamp meaning none in ROS, at `speed` times the steady clock.
 /// A loop that is late catches up tick by tick; one that is more than 0.1 s late, or whose ROS clock jumped by more, is
 /// set to now, which is counted.
 class TickClock {
@@ -19,6 +19,7 @@ class TickClock {
     Nanoseconds period = 1'000'000;
     bool own_time = false;
     double speed = 1.0;  // own time only; 0: as fast as it goes
+    Nanoseconds first_stamp = kNanosecondsPerSecond;  // own time only
   };
 
   TickClock(const Configuration& configuration, Nanoseconds steady_now, Nanoseconds ros_now);

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demo_logger/trajectory/demonstration.h"
+
+namespace demo_logger {
+
+/// What is recorded of a joint: `prefix` of the column ("q_") and word in its source ("position").
+struct JointQuantity {
+  const char* prefix;
+  const char* word;
+};
+
+constexpr JointQuantity kPosition = {"q_", "position"};
+constexpr JointQuantity kVelocity = {"dq_", "velocity"};
+constexpr JointQuantity kEffort = {"tau_", "effort"};
+
+/// The column of a joint, by its source joint_states/<word>/<joint>, or without a source by its name.
+std::optional<std::size_t> findJointColumn(const std::vector<Column>& columns, const JointQuantity& quantity,
+                                           const std::string& joint);
+
+/// The portable name of such a column.
+std::string jointColumnName(const JointQuantity& quantity, const std::string& joint);
+
+/// Adds columns at the end, in place of those of the same names, filled with NaN. Returns where the first of them is.
+Eigen::Index replaceColumns(const std::vector<Column>& added, Demonstration& demonstration);
+
+}  // namespace demo_logger
