@@ -18,6 +18,7 @@ namespace {
 using Index = Eigen::Index;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kRecovered = "human torque/";
 constexpr double kSingular = 1e-6;  // of the largest singular value, below which a direction says nothing
 
 /// Rows [first, last) without a silence of the joints.
@@ -237,17 +238,18 @@ class Recovery {
 
 std::vector<Column> addedColumns(const RobotDescription& robot) {
   std::vector<Column> columns;
-  const auto forEach = [&](const char* prefix, const char* word, const char* unit, const char* sliding, Role role) {
+  const auto forEach = [&](const char* prefix, const char* word, const char* unit, const char* sliding, Role role,
+                           const char* source) {
     for (const ArmJoint& joint : robot.joints) {
       const bool slides = joint.type == JointType::prismatic;
       columns.push_back({jointColumnName({prefix, word}, joint.name), slides ? sliding : unit, role,
-                         Interpolation::linear, "human torque/" + std::string(word) + "/" + joint.name});
+                         Interpolation::linear, std::string(source) + word + "/" + joint.name});
     }
   };
-  forEach("dq_", "velocity", "rad/s", "m/s", Role::state);
-  forEach("ddq_", "acceleration", "rad/s^2", "m/s^2", Role::state);
-  forEach("tau_h_", "torque", "N m", "N", Role::control);
-  forEach("tau_h_std_", "deviation", "N m", "N", Role::auxiliary);
+  forEach("dq_", "velocity", "rad/s", "m/s", Role::state, kSmoothed);
+  forEach("ddq_", "acceleration", "rad/s^2", "m/s^2", Role::auxiliary, kSmoothed);
+  forEach("tau_h_", "torque", "N m", "N", Role::auxiliary, kRecovered);
+  forEach("tau_h_std_", "deviation", "N m", "N", Role::auxiliary, kRecovered);
   const std::string source = "human torque at " + robot.tip + " in axes of " + robot.base;
   for (const char* axis : {"x", "y", "z"}) {
     columns.push_back({std::string("tool_f") + axis, "N", Role::auxiliary, Interpolation::linear, source});

@@ -8,10 +8,6 @@
 namespace demo_logger {
 namespace {
 
-bool endsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 void removeColumns(const std::vector<Column>& names, Demonstration& demonstration) {
   for (const Column& gone : names) {
     std::vector<Column>& columns = demonstration.columns;
@@ -35,11 +31,13 @@ std::string jointColumnName(const JointQuantity& quantity, const std::string& jo
 std::optional<std::size_t> findJointColumn(const std::vector<Column>& columns, const JointQuantity& quantity,
                                            const std::string& joint) {
   const std::string name = jointColumnName(quantity, joint);
-  const std::string source = "/" + std::string(quantity.word) + "/" + joint;
+  const std::string source = std::string(quantity.word) + "/" + joint;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const Column& column = columns[i];
-    if (column.role != Role::state) continue;
-    if (column.source.empty() ? column.name == name : endsWith(column.source, source)) return i;
+    const bool found = column.source.empty()
+                           ? column.name == name
+                           : column.source == "joint_states/" + source || column.source == kSmoothed + source;
+    if (found) return i;
   }
   return std::nullopt;
 }

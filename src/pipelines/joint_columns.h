@@ -19,7 +19,10 @@ constexpr JointQuantity kPosition = {"q_", "position"};
 constexpr JointQuantity kVelocity = {"dq_", "velocity"};
 constexpr JointQuantity kEffort = {"tau_", "effort"};
 
-/// The column of a joint, by its source joint_states/<word>/<joint>, or without a source by its name.
+/// How the source of a column begins that was made from positions by a smoother.
+constexpr const char* kSmoothed = "smoothed/";
+
+/// The column of a joint, by its source joint_states/<word>/<joint> (or smoothed/…), or without a source by its name.
 std::optional<std::size_t> findJointColumn(const std::vector<Column>& columns, const JointQuantity& quantity,
                                            const std::string& joint);
 

@@ -1,0 +1,298 @@
+#include "demo_logger/pipelines/human_torque.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "demo_logger/robot/robot_model.h"
+#include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/motion_smoother.h"
+
+namespace demo_logger {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kPeriod = 0.001;  // [s] of the arm's controller
+
+RobotDescription demoArm() {
+  return describeRobotFile(DEMO_LOGGER_SOURCE_DIR "/urdf/demo_arm.urdf", {"base_link", "tool_tip", {}, 9.81});
+}
+
+/// The same arm without what its drives lose.
+RobotDescription frictionless() {
+  RobotDescription arm = demoArm();
+  for (ArmJoint& joint : arm.joints) joint.damping = joint.friction = 0.0;
+  return arm;
+}
+
+/// A taught motion in closed form: each joint swings with two frequencies of its own.
+struct Motion {
+  Eigen::VectorXd q, dq, ddq;
+};
+Motion motionAt(double t) {
+  Motion motion{Eigen::VectorXd(7), Eigen::VectorXd(7), Eigen::VectorXd(7)};
+  for (Index i = 0; i < 7; ++i) {
+    const double w1 = 2.0 * kPi * (0.2 + 0.03 * static_cast<double>(i));
+    const double w2 = 2.0 * kPi * (0.7 + 0.05 * static_cast<double>(i));
+    motion.q[i] = 0.2 * static_cast<double>(i % 3) + 0.4 * std::sin(w1 * t) + 0.08 * std::cos(w2 * t);
+    motion.dq[i] = 0.4 * w1 * std::cos(w1 * t) - 0.08 * w2 * std::sin(w2 * t);
+    motion.ddq[i] = -0.4 * w1 * w1 * std::sin(w1 * t) - 0.08 * w2 * w2 * std::cos(w2 * t);
+  }
+  return motion;
+}
+
+/// The hand's torque: up to 10 N m at the shoulder, 0.2 N m at the wrist.
+Eigen::VectorXd handTorqueAt(double t) {
+  Eigen::VectorXd torque(7);
+  for (Index i = 0; i < 7; ++i) {
+    torque[i] =
+        10.0 / (1.0 + static_cast<double>(i * i)) * std::sin(2.0 * kPi * (0.3 + 0.1 * static_cast<double>(i)) * t);
+  }
+  return torque;
+}
+
+struct Teaching {
+  double rate = 1000.0;  // [Hz] of the log
+  double duration = 4.0;
+  double position_noise = 0.0;  // [rad]
+  double torque_noise = 0.0;    // [N m]
+  bool held = true;
+  std::string side = "motor";
+  bool with_friction = false;
+  double stamp_jitter = 0.0;  // [s]
+};
+
+/// What such a recording holds: true positions with noise, and the torques that the arm needs beside the hand's.
+Demonstration record(const Teaching& teaching) {
+  const RobotDescription arm = teaching.with_friction ? demoArm() : frictionless();
+  const RobotModel model(arm);
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  Demonstration demonstration;
+  for (const char* prefix : {"q_", "tau_"}) {
+    for (const std::string& joint : arm.jointNames()) {
+      demonstration.columns.push_back({prefix + joint, "", Role::state, Interpolation::linear, ""});
+    }
+  }
+  const auto motorTorqueAt = [&](double t) {
+    const Motion motion = motionAt(t);
+    Eigen::VectorXd torque = model.inverseDynamics(motion.q, motion.dq, motion.ddq) - handTorqueAt(t);
+    if (teaching.side == "motor") torque += model.friction(motion.dq);
+    return torque;
+  };
+  const auto rows = static_cast<Index>(teaching.duration * teaching.rate);
+  demonstration.values.resize(rows, 14);
+  for (Index k = 0; k < rows; ++k) {
+    const double t = static_cast<double>(k) / teaching.rate + teaching.stamp_jitter * normal(random);
+    demonstration.time.push_back(t);
+    // A torque held over [t, t + h) does what the continuous one does at the middle of that.
+    const Eigen::VectorXd torque = motorTorqueAt(teaching.held ? t + 0.5 * kPeriod : t);
+    const Eigen::VectorXd q = motionAt(t).q;
+    for (Index i = 0; i < 7; ++i) {
+      demonstration.values(k, i) = q[i] + teaching.position_noise * normal(random);
+      demonstration.values(k, 7 + i) = torque[i] + teaching.torque_noise * normal(random);
+    }
+  }
+  EffortMetadata& effort = demonstration.metadata.effort;
+  effort.side = teaching.side;
+  effort.timing = teaching.held ? "held" : "instant";
+  effort.control_period = kPeriod;
+  return demonstration;
+}
+
+double value(const Demonstration& demonstration, Index row, const std::string& column) {
+  for (std::size_t i = 0; i < demonstration.columns.size(); ++i) {
+    if (demonstration.columns[i].name == column) return demonstration.values(row, static_cast<Index>(i));
+  }
+  ADD_FAILURE() << "no column " << column;
+  return 0.0;
+}
+
+std::string joint(Index i) { return "joint_" + std::to_string(i + 1); }
+
+/// Root mean square over all joints and rows but 0.25 s at either end, in percent of the largest torque.
+double errorOf(const Demonstration& demonstration) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (Index k = 0; k < demonstration.values.rows(); ++k) {
+    const double t = demonstration.time[static_cast<std::size_t>(k)];
+    if (t < 0.25 || t > demonstration.time.back() - 0.25) continue;
+    const Eigen::VectorXd truth = handTorqueAt(t);
+    for (Index i = 0; i < 7; ++i) {
+      squares += std::pow(value(demonstration, k, "tau_h_" + joint(i)) - truth[i], 2);
+      count += 1.0;
+    }
+  }
+  return 100.0 * std::sqrt(squares / count) / 10.0;
+}
+
+std::string messageOf(const RobotDescription& arm, Demonstration demonstration,
+                      const HumanTorqueOptions& options = {}) {
+  try {
+    addHumanTorque(arm, demonstration, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(HumanTorqueTest, IsRecoveredFromPositionsAndHeldTorquesWithoutNoise) {
+  Demonstration demonstration = record({});
+  const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
+  EXPECT_LT(errorOf(demonstration), 1e-3) << "percent";
+  EXPECT_EQ(summary.rows, 4000U);
+  EXPECT_TRUE(summary.notes.empty());
+  EXPECT_NEAR(value(demonstration, 2000, "dq_joint_3"), motionAt(2.0).dq[2], 1e-6);
+  EXPECT_NEAR(value(demonstration, 2000, "ddq_joint_3"), motionAt(2.0).ddq[2], 1e-3);
+}
+
+TEST(HumanTorqueTest, TheInstantOfAHeldTorqueFollowsFromTheControlPeriodNotFromTheLogsInterval) {
+  Teaching slow;
+  slow.rate = 100.0;
+  Demonstration demonstration = record(slow);
+  addHumanTorque(frictionless(), demonstration);
+  const double error = errorOf(demonstration);
+  EXPECT_LT(error, 0.02);
+
+  Demonstration naive = record(slow);
+  naive.metadata.effort.control_period = 1.0 / slow.rate;
+  addHumanTorque(frictionless(), naive);
+  EXPECT_GT(errorOf(naive), 9.0 * error) << "half a sample of the log instead";
+}
+
+TEST(HumanTorqueTest, AnArmsFrictionIsMotorTorqueThatMovesNothing) {
+  Teaching teaching;
+  teaching.with_friction = true;
+  Demonstration demonstration = record(teaching);
+  Demonstration blind = demonstration;
+  addHumanTorque(demoArm(), demonstration);
+  addHumanTorque(frictionless(), blind);
+  EXPECT_LT(errorOf(demonstration), 0.2);
+  EXPECT_GT(errorOf(blind), 3.0) << "without a model of it";
+
+  teaching.side = "link";
+  teaching.held = false;
+  Demonstration at_the_links = record(teaching);
+  addHumanTorque(demoArm(), at_the_links);
+  EXPECT_LT(errorOf(at_the_links), 0.01) << "a sensor behind the gears sees no friction";
+}
+
+TEST(HumanTorqueTest, IsAsSureAsItSays) {
+  Teaching noisy;
+  noisy.rate = 500.0;
+  noisy.position_noise = 1e-4;
+  noisy.held = false;
+  noisy.torque_noise = 0.03;
+  Demonstration demonstration = record(noisy);
+  const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
+  for (const double noise : summary.encoder_noise) EXPECT_NEAR(noise, 1e-4, 1e-5);
+  int within = 0;
+  int all = 0;
+  double squares = 0.0;
+  for (Index k = 0; k < demonstration.values.rows(); ++k) {
+    const Eigen::VectorXd truth = handTorqueAt(demonstration.time[static_cast<std::size_t>(k)]);
+    for (Index i = 0; i < 7; ++i) {
+      const double error =
+          (value(demonstration, k, "tau_h_" + joint(i)) - truth[i]) / value(demonstration, k, "tau_h_std_" + joint(i));
+      within += std::abs(error) < 2.0 ? 1 : 0;
+      ++all;
+      squares += error * error;
+    }
+  }
+  EXPECT_GT(within, 0.93 * all);
+  EXPECT_GT(std::sqrt(squares / all), 0.6);
+  EXPECT_LT(std::sqrt(squares / all), 1.2);
+}
+
+TEST(HumanTorqueTest, TrueStampsMakeJitterHarmless) {
+  Teaching teaching;
+  teaching.position_noise = 2.0 * kPi / 262144.0 / std::sqrt(12.0);
+  teaching.held = false;
+  Demonstration even = record(teaching);
+  teaching.stamp_jitter = 100e-6;
+  Demonstration uneven = record(teaching);
+  addHumanTorque(frictionless(), even);
+  addHumanTorque(frictionless(), uneven);
+  EXPECT_LT(errorOf(uneven), 1.1 * errorOf(even));
+}
+
+TEST(HumanTorqueTest, TheForceAtTheToolExplainsTheTorquesOfAForceThere) {
+  Teaching teaching;
+  teaching.duration = 1.0;
+  teaching.held = false;
+  Demonstration demonstration = record(teaching);
+  const RobotModel model(frictionless());
+  Eigen::VectorXd wrench(6);
+  wrench << 20.0, -5.0, 8.0, 0.5, -0.3, 0.2;
+  for (Index k = 0; k < demonstration.values.rows(); ++k) {
+    const double t = demonstration.time[static_cast<std::size_t>(k)];
+    const Eigen::VectorXd torque = model.jacobian(motionAt(t).q).transpose() * wrench;
+    for (Index i = 0; i < 7; ++i) demonstration.values(k, 7 + i) += handTorqueAt(t)[i] - torque[i];
+  }
+  addHumanTorque(frictionless(), demonstration);
+  EXPECT_NEAR(value(demonstration, 500, "tool_fx"), 20.0, 1e-2);
+  EXPECT_NEAR(value(demonstration, 500, "tool_fz"), 8.0, 1e-2);
+  EXPECT_NEAR(value(demonstration, 500, "tool_ty"), -0.3, 1e-3);
+  EXPECT_GT(value(demonstration, 500, "tool_condition"), 1.0);
+}
+
+TEST(HumanTorqueTest, WithoutEffortsGravityCompensationMustBeDeclared) {
+  Demonstration demonstration = record({});
+  demonstration.values.middleCols(7, 7).setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(messageOf(frictionless(), demonstration),
+            "no column `tau_joint_1` with efforts of joint 'joint_1', without which the human's torque cannot be told "
+            "from the motor's; if the arm was compensated for gravity alone, say so (--gravity-compensated)");
+  HumanTorqueOptions options;
+  options.gravity_compensated = true;
+  const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration, options);
+  EXPECT_EQ(summary.notes.front(),
+            "no efforts were recorded: the motors count as compensating gravity, and nothing else");
+  const Motion motion = motionAt(2.0);
+  const RobotModel model(frictionless());
+  const Eigen::VectorXd expected = model.inverseDynamics(motion.q, motion.dq, motion.ddq) - model.gravity(motion.q);
+  EXPECT_NEAR(value(demonstration, 2000, "tau_h_joint_2"), expected[1], 1e-3) << "M q̈ + C q̇";
+}
+
+TEST(HumanTorqueTest, NothingIsSaidAcrossASilence) {
+  Demonstration demonstration = record({});
+  for (Index k = 1000; k < 1300; ++k) demonstration.values.row(k).setConstant(std::numeric_limits<double>::quiet_NaN());
+  demonstration.values.row(500).head(7).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
+  EXPECT_EQ(summary.notes.front(), "the joints were silent for more than 0.1 s, 1 times; nothing is said across that");
+  EXPECT_TRUE(std::isnan(value(demonstration, 1100, "tau_h_joint_1")));
+  EXPECT_NEAR(value(demonstration, 500, "tau_h_joint_1"), handTorqueAt(0.5)[0], 0.01) << "a single row is bridged";
+}
+
+TEST(HumanTorqueTest, ARecordingOfOneRowHasNoTorqueAndSaysWhy) {
+  Demonstration demonstration = record({});
+  demonstration.time.resize(1);
+  demonstration.values.conservativeResize(1, Eigen::NoChange);
+  const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
+  EXPECT_EQ(summary.rows, 0U);
+  EXPECT_EQ(summary.notes.front(),
+            "1 parts between silences have fewer than 8 rows, too few to tell an acceleration: they stay NaN");
+  EXPECT_TRUE(std::isnan(value(demonstration, 0, "tau_h_joint_1")));
+}
+
+TEST(HumanTorqueTest, SaysWhatItCannotUse) {
+  Demonstration demonstration = record({});
+  demonstration.metadata.effort.control_period = 0.0;
+  EXPECT_EQ(messageOf(frictionless(), demonstration),
+            "effort: control_period is 0 s, expected that of the arm's controller, since its efforts are held: a held "
+            "effort acts half of it late.");
+  demonstration.metadata.effort.timing = "sometimes";
+  EXPECT_EQ(messageOf(frictionless(), demonstration), "effort: timing is \"sometimes\", expected instant or held.");
+  demonstration.metadata.effort.side = "both";
+  EXPECT_EQ(messageOf(frictionless(), demonstration), "effort: side is \"both\", expected motor or link.");
+  Demonstration incomplete = record({});
+  incomplete.columns[2].name = "q_elbow";
+  EXPECT_EQ(messageOf(frictionless(), incomplete),
+            "no column `q_joint_3` with the position of joint 'joint_3', which the torques depend on");
+}
+
+}  // namespace
+}  // namespace demo_logger
