@@ -1,25 +1,17 @@
 #!/bin/bash
-# Builds the measurements and runs them: writes doc/benchmarks/{recording_cost,synchronisation_error,robot_model}.md with
-# the machine and the date.
+# Builds the measurements and runs them: writes doc/benchmarks/{recording_cost,simulated_arm,synchronisation_error}.md with the machine and
+# the date.
 set -euo pipefail
 if [ "${1:-}" = --help ]; then
-  echo "usage: bench/run.sh [recording_cost|synchronisation_error|robot_model] [options of recording_cost.py or robot_model.py]"
+  echo "usage: bench/run.sh [recording_cost|synchronisation_error|simulated_arm] [options of recording_cost.py]"
   echo "Needs what scripts/test.sh installs. About 15 minutes for all; without a name it runs all."
-  echo "robot_model takes --pinocchio PYTHON (one with the module pinocchio) and arms from the folder DEMO_LOGGER_URDF."
   exit 0
 fi
 project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 which=${1:-all}
 [ $# -eq 0 ] || shift
-[ "$which" != all ] || set --
-targets=()
-case $which in
-  all | recording_cost) ;;
-  synchronisation_error | robot_model) targets=(--target "$which") ;;
-  *) echo "run.sh: unknown measurement \"$which\"; --help shows what there is" >&2; exit 2 ;;
-esac
 cmake -S "$project" -B "$project/build" -DDEMO_LOGGER_BENCH=ON >/dev/null
-cmake --build "$project/build" -j "$(nproc)" ${targets[@]+"${targets[@]}"} >/dev/null
+cmake --build "$project/build" -j "$(nproc)" >/dev/null
 set +u
 . "$project/devel/setup.bash"
 set -u
@@ -42,14 +34,28 @@ measure() {  # title, output, command …
 }
 
 mkdir -p "$project/doc/benchmarks"
-if [ "$which" = all ] || [ "$which" = synchronisation_error ]; then
+wanted() { [ "$which" = all ] || [ "$which" = "$1" ]; }
+
+# Other simulators, in an environment of their own; without them their rows are missing, and a sentence says so.
+simulatedArm() {
+  "$programs/simulated_arm_cost"
+  local peers
+  peers=$(mktemp -d)
+  python3 -m venv "$peers" >/dev/null 2>&1 && "$peers/bin/pip" install --quiet pybullet mujoco >/dev/null 2>&1 || true
+  local python=$peers/bin/python
+  [ -x "$python" ] || python=python3
+  "$python" "$project/bench/simulated_arm_peers.py" "$project/urdf/demo_arm.urdf" 2>/dev/null | grep -E '^\||^Not compared' || true
+  rm -rf "$peers"
+  "$programs/simulated_arm_cost" drift
+}
+
+if wanted simulated_arm; then
+  measure "What a simulated millisecond costs" "$project/doc/benchmarks/simulated_arm.md" simulatedArm
+fi
+if wanted synchronisation_error; then
   measure "Synchronisation error against truth" "$project/doc/benchmarks/synchronisation_error.md" "$programs/synchronisation_error"
 fi
-if [ "$which" = all ] || [ "$which" = robot_model ]; then
-  measure "Inverse dynamics: cost and agreement" "$project/doc/benchmarks/robot_model.md" \
-    /usr/bin/python3 "$project/bench/robot_model.py" "$programs" "$@"
-fi
-if [ "$which" = all ] || [ "$which" = recording_cost ]; then
+if wanted recording_cost; then
   measure "What recording costs and loses" "$project/doc/benchmarks/recording_cost.md" \
     /usr/bin/python3 "$project/bench/recording_cost.py" "$programs" "$@"
 fi
