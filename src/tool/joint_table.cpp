@@ -8,6 +8,8 @@
 #include "demo_logger/formats/column_names.h"
 #include "demo_logger/formats/csv_writer.h"
 #include "demo_logger/robot/inverse_kinematics.h"
+#include "demo_logger/robot/path_tracking.h"
+#include "demo_logger/trajectory/error.h"
 
 namespace demo_logger {
 namespace {
@@ -38,6 +40,7 @@ class JointTableWriter {
     addCell(std::round(1e3 * microseconds) * 1e-3);  // the clock tells nanoseconds
     table_.csv += status;
     table_.csv += '\n';
+    ++table_.counted[status];
     if (met) ++table_.met;
     table_.largest_residual = std::fmax(table_.largest_residual, residual);
     table_.mean_microseconds += microseconds;
@@ -60,6 +63,22 @@ class JointTableWriter {
   JointTable table_;
 };
 
+std::vector<double> timesOf(const PoseTable& poses, const std::string& file, double rate) {
+  if (poses.time.empty()) {
+    std::vector<double> times(poses.poses.size());
+    for (std::size_t row = 0; row < times.size(); ++row) times[row] = static_cast<double>(row) / rate;
+    return times;
+  }
+  for (std::size_t row = 0; row < poses.time.size(); ++row) {
+    const bool follows = row == 0 || poses.time[row] > poses.time[row - 1];
+    if (!std::isfinite(poses.time[row]) || !follows) {
+      throw FileError(file + ":" + std::to_string(row + 2) + ": time " + std::to_string(poses.time[row]) +
+                      " s does not follow the row before; to track, times must strictly increase");
+    }
+  }
+  return poses.time;
+}
+
 }  // namespace
 
 JointTable solveTable(const PoseTable& poses, const RobotDescription& arm, const SolveTableOptions& options,
@@ -81,6 +100,47 @@ JointTable solveTable(const PoseTable& poses, const RobotDescription& arm, const
     writer.add(q, solution.residual, microseconds, solution.solved, solution.solved ? "solved" : "failed");
   }
   return writer.finish();
+}
+
+JointTable trackTable(const PoseTable& poses, const std::string& file, const RobotDescription& arm,
+                      const TrackTableOptions& options, const RowProgress& progress) {
+  const std::vector<double> times = timesOf(poses, file, options.rate);
+  const Eigen::VectorXd start = poses.seeds.empty() ? InverseKinematics(arm).middle() : poses.seeds.front();
+  if (!start.allFinite()) {
+    throw FileError(file + ":2: the seed is not finite, expected the positions at which the motion starts");
+  }
+  JointTableWriter writer(poses, arm, progress);
+  const auto add = [&](const TrackedStep& step, const Eigen::VectorXd& q, double seconds) {
+    const double residual =
+        std::isnan(step.position_error) ? step.position_error : std::max(step.position_error, step.rotation_error);
+    writer.add(q, residual, 1e6 * seconds, step.status == TrackingStatus::tracked, toString(step.status));
+  };
+  double planning = 0.0;
+  if (options.foresight) {
+    PathTracker tracker(arm, poses.poses, times, start, options.tracking);
+    for (std::size_t row = 0; row < times.size(); ++row) {
+      Clock::time_point begin = Clock::now();
+      if (tracker.needsPlan()) {
+        tracker.plan();
+        planning += secondsSince(begin);
+        begin = Clock::now();
+      }
+      const TrackedStep step = tracker.step();
+      add(step, tracker.q(), secondsSince(begin));
+    }
+  } else {
+    Tracker tracker(arm, options.tracking);
+    tracker.reset(start);
+    for (std::size_t row = 0; row < times.size(); ++row) {
+      const Clock::time_point begin = Clock::now();
+      const TrackedStep step =
+          row == 0 ? tracker.stay(poses.poses[0]) : tracker.step(poses.poses[row], times[row] - times[row - 1]);
+      add(step, tracker.q(), secondsSince(begin));
+    }
+  }
+  JointTable table = writer.finish();
+  table.planning_seconds = planning;
+  return table;
 }
 
 }  // namespace demo_logger

@@ -26,6 +26,10 @@ struct Options {
   RobotOptions robot;
   std::optional<double> tolerance;
   std::optional<double> budget;
+  std::string mode = "solve";
+  double rate = 100.0;
+  TrackingOptions tracking;
+  bool no_foresight = false;
   unsigned jobs = 1;
   bool force = false;
   bool json = false;
@@ -40,11 +44,20 @@ Result convert(const std::filesystem::path& input, const RobotDescription& arm, 
                const RowProgress& progress) {
   RowNotes notes(input.string());
   const PoseTable poses = readPoseTable(input, arm, notes);
-  SolveTableOptions solve;
-  solve.tolerance = options.tolerance.value_or(solve.tolerance);
-  solve.budget = options.budget;
   Result result;
-  result.table = solveTable(poses, arm, solve, progress);
+  if (options.mode == "track") {
+    TrackTableOptions track;
+    track.tracking = options.tracking;
+    track.tracking.tolerance = options.tolerance.value_or(track.tracking.tolerance);
+    track.rate = options.rate;
+    track.foresight = !options.no_foresight;
+    result.table = trackTable(poses, input.string(), arm, track, progress);
+  } else {
+    SolveTableOptions solve;
+    solve.tolerance = options.tolerance.value_or(solve.tolerance);
+    solve.budget = options.budget;
+    result.table = solveTable(poses, arm, solve, progress);
+  }
   result.notes = notes.sentences();
   return result;
 }
@@ -66,9 +79,10 @@ ordered_json toJson(const InputAndOutput& entry, const Result& result) {
   return {{"file", entry.input.string()},
           {"output", entry.output.string()},
           {"rows", table.rows},
-          {"solved", table.met},
+          {"status", table.counted},
           {"largest_residual", table.largest_residual},
           {"mean_microseconds", table.mean_microseconds},
+          {"planning_seconds", table.planning_seconds},
           {"notes", result.notes}};
 }
 
@@ -77,9 +91,10 @@ void print(const InputAndOutput& entry, const Result& result) {
   for (const std::string& note : result.notes) std::cout << note << '\n';
   std::ostringstream figures;
   figures.precision(3);
+  for (const auto& [status, rows] : table.counted) figures << rows << ' ' << status << ", ";
   figures << "largest residual " << table.largest_residual << " m or rad, " << table.mean_microseconds << " µs a row";
-  std::cout << entry.output.string() << ": " << table.met << " of " << table.rows << " rows solved, " << figures.str()
-            << '\n';
+  if (table.planning_seconds > 0.0) figures << ", " << table.planning_seconds << " s for the plan";
+  std::cout << entry.output.string() << ": " << table.rows << " rows: " << figures.str() << '\n';
 }
 
 int convertAll(const Options& options) {
@@ -119,11 +134,26 @@ void addIkVerb(CLI::App& tool, int& exit_code) {
   verb->add_option("-o,--output", options->output, "table to write; of several inputs the directory for theirs")
       ->required();
   addRobotOptions(*verb, options->robot);
+  verb->add_option("--mode", options->mode, "solve: each pose by itself; track: one motion within the arm's limits")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"solve", "track"}));
   verb->add_option("--tolerance", options->tolerance,
-                   "[m] and [rad] that position and rotation may be off (default: 1e-6)")
+                   "[m] and [rad] that position and rotation may be off (default: 1e-6 to solve, 1e-3 to track)")
       ->check(CLI::PositiveNumber);
-  verb->add_option("--budget", options->budget, "[s] for one row (default: bounded by iterations, some 5 ms)")
+  verb->add_option("--budget", options->budget, "solve: [s] for one row (default: bounded by iterations, some 5 ms)")
       ->check(CLI::PositiveNumber);
+  verb->add_option("--rate", options->rate, "track: [Hz] of a table without time")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--max-velocity", options->tracking.max_velocity,
+                   "track: [rad/s or m/s] of each joint, beside the description's (default: those alone)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--max-acceleration", options->tracking.max_acceleration, "track: [rad/s² or m/s²] of each joint")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  verb->add_flag("--no-foresight", options->no_foresight,
+                 "track: each step from the poses up to it, as a live robot must; else what a pose leaves open is "
+                 "chosen with a view to the next 20 s");
   verb->add_option("--jobs", options->jobs, "tables worked on at once")
       ->capture_default_str()
       ->check(CLI::Range(1U, 256U));
@@ -131,8 +161,11 @@ void addIkVerb(CLI::App& tool, int& exit_code) {
   verb->add_flag("--json", options->json, "print one JSON object instead");
   verb->footer(
       "Example: demo_tool ik poses.csv -o joints.csv --urdf arm.urdf --base base_link --tip tool0\n"
-      "Columns written: time if given, q_<joint>, residual (larger of [m] and [rad]), microseconds, status.\n"
-      "Exit code: 1 if a row was not solved.");
+      "Columns written: time if given, q_<joint>, residual (larger of [m] and [rad]), microseconds, status: solved or\n"
+      "failed; tracked, speed_limited, at_limit or unreachable. track starts at rest at the first row's seed "
+      "(default:\n"
+      "the middle of the ranges), the first row being the start itself.\n"
+      "Exit code: 1 if a row was not solved or tracked.");
   verb->callback([options, &exit_code] { exit_code = convertAll(*options); });
 }
 

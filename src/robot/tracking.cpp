@@ -1,0 +1,286 @@
+#include "demo_logger/robot/tracking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "comfort.h"
+#include "demo_logger/trajectory/error.h"
+#include "joint_ranges.h"
+#include "motion_limits.h"
+#include "pose_error.h"
+#include "step_solver.h"
+
+namespace demo_logger {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+constexpr double kWish = 1e-5;      // weight of the wanted displacement: errs by less than 1e-6 m or rad
+constexpr double kSettling = 0.05;  // [s] in which the motion that the target leaves open takes the wanted velocity
+constexpr double kPull = 10.0;      // [1/s] towards a preferred posture
+constexpr double kCalming = 0.5;    // per weighed error that no posture removes: the curvature of the reach's edge
+constexpr double kRotationAfter = 0.01;  // weight of the rotation where not both can be had
+constexpr double kHorizon = 0.1;         // [s] ahead of which the reachable is judged …
+constexpr double kFurthest = 0.5;        // [rad or m] … within this
+constexpr double kCatchUp = 0.7;         // share of the acceleration planned for catching up; the target needs some too
+constexpr double kReached = 0.3;         // share of the tolerance
+constexpr double kFastest = 1e3;         // [rad/s or m/s] of a joint without a limit
+constexpr int kApproaches = 4;           // Gauss-Newton iterations, at most
+constexpr int kCorrections = 3;
+constexpr int kDeepestHalving = 10;
+
+}  // namespace
+
+const char* toString(TrackingStatus status) {
+  switch (status) {
+    case TrackingStatus::tracked:
+      return "tracked";
+    case TrackingStatus::speed_limited:
+      return "speed_limited";
+    case TrackingStatus::at_limit:
+      return "at_limit";
+    case TrackingStatus::unreachable:
+      break;
+  }
+  return "unreachable";
+}
+
+class Tracker::Implementation {
+ public:
+  Implementation(const RobotDescription& robot, const TrackingOptions& given)
+      : name(robot.name),
+        options(given),
+        ranges(robot),
+        limits(robot, given.max_velocity, given.max_acceleration),
+        solver(robot) {
+    rest(ranges.middle());
+  }
+
+  Eigen::Index size() const { return limits.lower().size(); }
+
+  void rest(const JointVector& start) {
+    q = start;
+    velocity.setZero(size());
+    previous_dt = 0.0;
+    has_last_target = false;
+    has_preference = false;
+    position_first = false;
+    out_of_reach = 0.0;
+    publish();
+  }
+
+  TrackedStep step(const RigidPose& target, double dt, int halvings) {
+    if (previous_dt == 0.0) previous_dt = dt;
+    if (!limits.box(q, velocity, previous_dt, dt, box) && dt > previous_dt && halvings < kDeepestHalving) {
+      step(target, 0.5 * dt, halvings + 1);
+      return step(target, 0.5 * dt, halvings + 1);
+    }
+    wishForNextStep(dt);
+    const bool reachable = solveUnhurried(target, dt) || solveFromPreference(target, dt);
+    guardAgainstOvershoot(dt);
+    x = unhurried.cwiseMax(box.lower).cwiseMin(box.upper);
+    if (x != unhurried && !in_transit) {
+      wishes.displacement = x;
+      wishes.calming = reachable ? 0.0 : kCalming * out_of_reach;
+      wishes.rotation = position_first ? kRotationAfter : 1.0;
+      solver.approach(target, q, wishes, box, kCorrections, x);
+    }
+    moveBy(dt);
+    last_target = target;
+    has_last_target = true;
+    return judge(target, reachable);
+  }
+
+  /// Without a target: comes to rest.
+  TrackedStep slowDown(double dt) {
+    if (previous_dt == 0.0) previous_dt = dt;
+    limits.box(q, velocity, previous_dt, dt, box);
+    x = JointVector::Zero(size()).cwiseMax(box.lower).cwiseMin(box.upper);
+    moveBy(dt);
+    has_last_target = false;
+    has_preference = false;
+    return {TrackingStatus::unreachable, kNan, kNan};
+  }
+
+  /// Where the target leaves it open, the arm moves on as it did, and takes on the velocity of a comfortable or the
+  /// preferred motion. Moving on is what leads through singular postures.
+  void wishForNextStep(double dt) {
+    if (has_preference) {
+      wanted = preferred_velocity + kPull * (preferred - dt * preferred_velocity - q);
+      wanted = wanted.cwiseMax(-limits.velocity()).cwiseMin(limits.velocity());
+    } else {
+      comfortVelocity(q, limits, solver, wanted);
+    }
+    const double share = std::min(1.0, dt / kSettling);
+    wishes.weight = kWish;
+    wishes.displacement = dt * (velocity + share * (wanted - velocity));
+    wishes.calm = (1.0 - share) * dt * velocity;
+  }
+
+  /// The displacement of an arm without limits of velocity and acceleration, and the part of it that only follows the
+  /// target's own motion. False if it does not reach the target.
+  bool solveUnhurried(const RigidPose& target, double dt) {
+    const Eigen::Index n = size();
+    const JointVector fastest = limits.velocity().cwiseMin(kFastest);
+    const JointVector furthest = (std::max(kHorizon, 3.0 * dt) * fastest).cwiseMin(kFurthest);
+    wide.lower = (limits.lower() - q).cwiseMax(-furthest);
+    wide.upper = (limits.upper() - q).cwiseMin(furthest);
+    unhurried = (dt * velocity).cwiseMax(wide.lower).cwiseMin(wide.upper);
+    wishes.calming = kCalming * out_of_reach;
+    wishes.rotation = position_first ? kRotationAfter : 1.0;
+    solver.approach(target, q, wishes, wide, kApproaches, unhurried);
+    own = unhurried;
+    if (has_last_target) {
+      wide.lower = -dt * fastest;
+      wide.upper = dt * fastest;
+      own.resize(n);
+      solver.follow(poseError(target, last_target), wishes, wide, own);
+    }
+    in_transit = false;
+    const Vector6 error = solver.errorAt(target, q + unhurried);
+    const bool reachable = largerError(error) <= kReached * options.tolerance;
+    position_first = !reachable;
+    out_of_reach = reachable ? 0.0 : solver.weighed(error, kRotationAfter);
+    return reachable;
+  }
+
+  /// Stuck where it is, but the preferred posture leads to the target: then that is where to go.
+  bool solveFromPreference(const RigidPose& target, double dt) {
+    if (!has_preference) return false;
+    wide.lower = limits.lower() - q;
+    wide.upper = limits.upper() - q;
+    other = (preferred - q).cwiseMax(wide.lower).cwiseMin(wide.upper);
+    wishes.displacement = other;
+    wishes.calming = 0.0;
+    wishes.rotation = 1.0;
+    solver.approach(target, q, wishes, wide, kCorrections, other);
+    if (largerError(solver.errorAt(target, q + other)) > kReached * options.tolerance) return false;
+    unhurried = other;
+    own = dt * preferred_velocity;
+    in_transit = true;
+    position_first = false;
+    out_of_reach = 0.0;
+    return true;
+  }
+
+  /// A joint that is behind catches up only as fast as it can slow down again when it has.
+  void guardAgainstOvershoot(double dt) {
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      const double behind = unhurried[i] - own[i];
+      const double most = dt * brakingVelocity(std::abs(behind), kCatchUp * limits.acceleration(), dt);
+      if (std::abs(behind) <= (1.0 + 1e-9) * most) continue;
+      if (behind > 0.0) {
+        box.upper[i] = std::clamp(own[i] + most, box.lower[i], box.upper[i]);
+      } else {
+        box.lower[i] = std::clamp(own[i] - most, box.lower[i], box.upper[i]);
+      }
+    }
+  }
+
+  void moveBy(double dt) {
+    q = (q + x).cwiseMax(limits.lower()).cwiseMin(limits.upper());
+    velocity = x / dt;
+    previous_dt = dt;
+    publish();
+  }
+
+  TrackedStep judge(const RigidPose& target, bool reachable) {
+    const Vector6 error = solver.errorAt(target, q);
+    TrackedStep result{TrackingStatus::tracked, error.head<3>().norm(), error.tail<3>().norm()};
+    if (std::max(result.position_error, result.rotation_error) <= options.tolerance) return result;
+    const double distance = (target.p - solver.kinematics().firstOrigin()).norm();
+    result.status = reachable                                ? TrackingStatus::speed_limited
+                    : distance > solver.kinematics().reach() ? TrackingStatus::unreachable
+                    : touchesLimit()                         ? TrackingStatus::at_limit
+                                                             : TrackingStatus::unreachable;
+    return result;
+  }
+
+  bool touchesLimit() const {
+    constexpr double kTouching = 1e-3;  // [rad or m]
+    return ((q - limits.lower()).array() < kTouching || (limits.upper() - q).array() < kTouching).any();
+  }
+
+  void publish() {
+    public_q = q;
+    public_velocity = velocity;
+  }
+
+  std::string name;
+  TrackingOptions options;
+  JointRanges ranges;
+  MotionLimits limits;
+  StepSolver solver;
+
+  // The state from step to step.
+  JointVector q, velocity;
+  double previous_dt = 0.0;  // [s] 0 before the first step
+  RigidPose last_target;
+  bool has_last_target = false;
+  bool position_first = false;
+  double out_of_reach = 0.0;  // weighed error that is left however long the arm may take
+  JointVector preferred, preferred_velocity;
+  bool has_preference = false;
+  Eigen::VectorXd public_q, public_velocity;
+
+  // Within a step.
+  MotionBox box, wide;
+  StepWishes wishes;
+  JointVector wanted, unhurried, own, other, x;
+  bool in_transit = false;
+};
+
+Tracker::Tracker(const RobotDescription& robot, const TrackingOptions& options) {
+  if (!(options.max_velocity > 0.0) || !(options.max_acceleration > 0.0) || !(options.tolerance > 0.0)) {
+    throw ConfigurationError("tracking: the velocity limit is " + std::to_string(options.max_velocity) +
+                             ", the acceleration limit " + std::to_string(options.max_acceleration) +
+                             ", the tolerance " + std::to_string(options.tolerance) + "; expected positive numbers");
+  }
+  implementation_ = std::make_unique<Implementation>(robot, options);
+}
+Tracker::~Tracker() = default;
+Tracker::Tracker(Tracker&&) noexcept = default;
+Tracker& Tracker::operator=(Tracker&&) noexcept = default;
+
+const Eigen::VectorXd& Tracker::q() const { return implementation_->public_q; }
+const Eigen::VectorXd& Tracker::velocity() const { return implementation_->public_velocity; }
+
+void Tracker::reset(const Eigen::VectorXd& q) {
+  Implementation& own = *implementation_;
+  if (q.size() != own.size() || !q.allFinite()) {
+    throw ModelError("robot '" + own.name + "': cannot start tracking from " + std::to_string(q.size()) +
+                     " values, expected a finite one for each of its " + std::to_string(own.size()) + " joints");
+  }
+  own.rest(own.ranges.clamped(q));
+}
+
+TrackedStep Tracker::stay(const Eigen::Isometry3d& X_base_target) {
+  const RigidPose target{X_base_target.linear(), X_base_target.translation()};
+  if (!isRigid(target)) return {TrackingStatus::unreachable, kNan, kNan};
+  implementation_->last_target = target;
+  implementation_->has_last_target = true;
+  return implementation_->judge(target, true);
+}
+
+void Tracker::prefer(const Eigen::VectorXd& posture, const Eigen::VectorXd& velocity) {
+  Implementation& own = *implementation_;
+  own.has_preference =
+      posture.size() == own.size() && velocity.size() == own.size() && posture.allFinite() && velocity.allFinite();
+  if (!own.has_preference) return;
+  own.preferred = posture;
+  own.preferred_velocity = velocity;
+}
+
+TrackedStep Tracker::step(const Eigen::Isometry3d& X_base_target, double dt) {
+  if (!(dt > 0.0) || !std::isfinite(dt)) {
+    throw ConfigurationError("tracking: a step of " + std::to_string(dt) + " s, expected a positive time");
+  }
+  const RigidPose target{X_base_target.linear(), X_base_target.translation()};
+  if (!isRigid(target)) return implementation_->slowDown(dt);
+  const TrackedStep result = implementation_->step(target, dt, 0);
+  implementation_->has_preference = false;
+  return result;
+}
+
+}  // namespace demo_logger
