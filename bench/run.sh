@@ -1,15 +1,19 @@
 #!/bin/bash
-# Builds the measurements and runs them: writes doc/benchmarks/{recording_cost,simulated_arm,synchronisation_error}.md with the machine and
-# the date.
+# Builds the measurements and runs them: writes the tables of doc/benchmarks/ with the machine and the date.
 set -euo pipefail
 if [ "${1:-}" = --help ]; then
-  echo "usage: bench/run.sh [recording_cost|synchronisation_error|simulated_arm] [options of recording_cost.py]"
+  echo "usage: bench/run.sh [recording_cost|robot_model|simulated_arm|synchronisation_error] [options of recording_cost.py]"
   echo "Needs what scripts/test.sh installs. About 15 minutes for all; without a name it runs all."
+  echo "robot_model also measures the arms in the folder that DEMO_LOGGER_URDF names."
   exit 0
 fi
 project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 which=${1:-all}
 [ $# -eq 0 ] || shift
+case $which in
+  all | recording_cost | robot_model | simulated_arm | synchronisation_error) ;;
+  *) echo "run.sh: unknown measurement \"$which\"; --help shows what there is" >&2; exit 2 ;;
+esac
 cmake -S "$project" -B "$project/build" -DDEMO_LOGGER_BENCH=ON >/dev/null
 cmake --build "$project/build" -j "$(nproc)" >/dev/null
 set +u
@@ -36,19 +40,35 @@ measure() {  # title, output, command …
 mkdir -p "$project/doc/benchmarks"
 wanted() { [ "$which" = all ] || [ "$which" = "$1" ]; }
 
-# Other simulators, in an environment of their own; without them their rows are missing, and a sentence says so.
-simulatedArm() {
-  "$programs/simulated_arm_cost"
+# withPeers FOLDER MODULE…: an environment of their own for peers that the distribution lacks; where it cannot be had,
+# their rows are missing, and a sentence says so. Prints the Python to take.
+withPeers() {
+  local folder=$1
+  shift
+  python3 -m venv "$folder" >/dev/null 2>&1 && "$folder/bin/pip" install --quiet "$@" >/dev/null 2>&1 || true
+  if [ -x "$folder/bin/python" ]; then echo "$folder/bin/python"; else echo python3; fi
+}
+
+robotModel() {
   local peers
   peers=$(mktemp -d)
-  python3 -m venv "$peers" >/dev/null 2>&1 && "$peers/bin/pip" install --quiet pybullet mujoco >/dev/null 2>&1 || true
-  local python=$peers/bin/python
-  [ -x "$python" ] || python=python3
+  /usr/bin/python3 "$project/bench/robot_model.py" "$programs" --pinocchio "$(withPeers "$peers" pin)"
+  rm -rf "$peers"
+}
+
+simulatedArm() {
+  "$programs/simulated_arm_cost"
+  local peers python
+  peers=$(mktemp -d)
+  python=$(withPeers "$peers" pybullet mujoco)
   "$python" "$project/bench/simulated_arm_peers.py" "$project/urdf/demo_arm.urdf" 2>/dev/null | grep -E '^\||^Not compared' || true
   rm -rf "$peers"
   "$programs/simulated_arm_cost" drift
 }
 
+if wanted robot_model; then
+  measure "Inverse dynamics: cost and agreement" "$project/doc/benchmarks/robot_model.md" robotModel
+fi
 if wanted simulated_arm; then
   measure "What a simulated millisecond costs" "$project/doc/benchmarks/simulated_arm.md" simulatedArm
 fi

@@ -9,7 +9,7 @@ usage: scripts/install_dependencies.sh [--list | --missing] [GROUP…]
 
 Installs what is missing of the distribution's packages, and nothing else.
 
-  GROUP       build, run, test, lint            (default: build run test)
+  GROUP       build, run, test, lint, picture   (default: build run test)
   --list      print the packages of the groups, one a line, install nothing
   --missing   print only those that are not installed, install nothing
 
@@ -39,6 +39,9 @@ test_packages=(
   python3-jsonschema python3-rosbag python3-rostest
 )
 
+# Only for scripts/picture.sh: RViz on a virtual screen, and what takes the picture.
+picture_packages=(libgl1-mesa-dri python3-pil rviz xvfb)
+
 # Only for scripts/lint.sh.
 lint_packages=(clang-tidy shellcheck)
 
@@ -53,7 +56,7 @@ for argument in "$@"; do
   case $argument in
     -h | --help) usage; exit 0 ;;
     --list | --missing) action=${argument#--} ;;
-    build | run | test | lint) groups+=("$argument") ;;
+    build | run | test | lint | picture) groups+=("$argument") ;;
     *) echo "install_dependencies.sh: unknown argument \"$argument\"; --help shows what there is" >&2; exit 2 ;;
   esac
 done
