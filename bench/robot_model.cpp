@@ -66,8 +66,8 @@ std::vector<State> randomStates(const RobotDescription& arm) {
 /// KDL's recursive Newton-Euler and nothing else.
 class BareKdl {
  public:
-  BareKdl(KDL::Chain chain, const Eigen::Vector3d& gravity)
-      : chain_(std::move(chain)),
+  BareKdl(const KDL::Chain& chain, const Eigen::Vector3d& gravity)
+      : chain_(chain),
         solver_(chain_, toKdl(gravity)),
         q_(chain_.getNrOfJoints()),
         dq_(q_),

@@ -75,7 +75,7 @@ std::string impossibility(const BodyInertia& body) {
 }
 
 std::string implausibility(const BodyInertia& body) {
-  if (const std::string impossible = impossibility(body); !impossible.empty()) return impossible;
+  if (std::string impossible = impossibility(body); !impossible.empty()) return impossible;
   const Eigen::Vector3d moments = principalMoments(body);
   return excess(moments) > kSixDecimals + rounding(body, moments) ? impossibleMoments(moments, kTriangle) : "";
 }

@@ -189,7 +189,7 @@ RobotDescription describe(const std::string& where, const std::string& urdf_xml,
     RobotDescription description = describeTree(parseUrdf(urdf_xml), options);
     description.urdf_sha256 = sha256(urdf_xml);
     if (!description.has_inertia) description.inertia_fault = where + ": " + description.inertia_fault;
-    for (std::string& warning : description.warnings) warning = where + ": " + warning;
+    for (std::string& warning : description.warnings) warning.insert(0, where + ": ");
     return description;
   } catch (const ModelError& error) {
     throw ModelError(where + ": " + error.what());

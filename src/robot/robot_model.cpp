@@ -54,7 +54,7 @@ class RobotModel::Implementation {
         ddq(q),
         torque(q),
         twists(chain.getNrOfJoints()),
-        mass(chain.getNrOfJoints()),
+        mass(size()),
         wrenches(chain.getNrOfSegments(), KDL::Wrench::Zero()) {}
 
   int size() const { return static_cast<int>(description.joints.size()); }

@@ -14,7 +14,7 @@ namespace demo_logger {
 namespace {
 
 constexpr int kThreads = 3;
-constexpr int kRounds = 30;
+constexpr int kRounds = 60;
 
 /// What a model says of one state, to the bit.
 struct Answer {
