@@ -13,12 +13,10 @@ constexpr double kRounding = 1e-6;
 
 double brakingVelocity(double distance, double acceleration, double dt) {
   if (distance <= 0.0) return 0.0;
-  const double quantum = acceleration * dt;  // velocity lost per step
-  const double steps = distance / (quantum * dt);
-  if (!std::isfinite(quantum) || !std::isfinite(steps)) return distance / dt;
-  // Braking takes m further steps: v (m + 1) − quantum m (m + 1)/2 = distance/dt, with m quantum ≤ v ≤ (m + 1) quantum.
-  const double m = std::floor(0.5 * (std::sqrt(1.0 + 8.0 * steps) - 1.0));
-  return quantum * (steps + 0.5 * m * (m + 1.0)) / (m + 1.0);
+  // Covered in this step: what is left of the velocity is lost in the first half of the next one.
+  if (!(distance > 0.5 * acceleration * dt * dt)) return distance / dt;
+  // v dt + (v − a dt/2)²/(2 a) = distance
+  return std::sqrt(2.0 * acceleration * distance) - 0.5 * acceleration * dt;
 }
 
 MotionLimits::MotionLimits(const RobotDescription& robot, double max_velocity, double max_acceleration)
@@ -35,12 +33,11 @@ MotionLimits::MotionLimits(const RobotDescription& robot, double max_velocity, d
   }
 }
 
-bool MotionLimits::box(const JointVector& q, const JointVector& velocity, double previous_dt, double dt,
+void MotionLimits::box(const JointVector& q, const JointVector& velocity, double previous_dt, double dt,
                        MotionBox& box) const {
   const Eigen::Index n = q.size();
   box.lower.resize(n);
   box.upper.resize(n);
-  bool possible = true;
   // Braking is planned with a little less than is allowed, which absorbs rounding.
   const double braking = (1.0 - kRounding) * acceleration_;
   const double change = 0.5 * (previous_dt + dt) * acceleration_;
@@ -49,14 +46,10 @@ bool MotionLimits::box(const JointVector& q, const JointVector& velocity, double
     const double fastest_down = -std::min(velocity_[i], brakingVelocity(q[i] - lower_[i], braking, dt));
     double low = std::max(fastest_down, velocity[i] - change);
     double high = std::min(fastest_up, velocity[i] + change);
-    if (low > high) {
-      possible = false;
-      low = high = low > fastest_up ? fastest_up : fastest_down;
-    }
+    if (low > high) low = high = low > fastest_up ? fastest_up : fastest_down;  // by rounding
     box.lower[i] = low * dt;
     box.upper[i] = high * dt;
   }
-  return possible;
 }
 
 }  // namespace demo_logger

@@ -4,9 +4,10 @@
 
 namespace demo_logger {
 
-/// The largest velocity for the next step of length dt from which a joint comes to rest within `distance`, slowing
-/// down by at most `acceleration` from step to step:
-///   dt Σ_{j ≥ 0} max(0, v − j a dt) = distance
+/// The largest velocity for the next step of length dt after which a joint can come to rest within `distance`, however
+/// long the steps then are. Mean velocities of consecutive steps differ by at most the acceleration times the mean of
+/// the two lengths, so the joint moves as if it braked evenly from the middle of this step on:
+///   v dt + (v − a dt/2)²/(2 a) = distance
 double brakingVelocity(double distance, double acceleration, double dt);
 
 /// Bounds for the next displacement of each joint [rad or m].
@@ -17,7 +18,7 @@ struct MotionBox {
 
 /// What velocity, acceleration and position limits leave of the next step. A joint's velocity is its displacement over
 /// the step's length; velocities of consecutive steps may differ by the acceleration limit times the mean of the two
-/// lengths; and the joint must be able to stop before its position limits with steps of this length.
+/// lengths; and the joint must be able to stop before its position limits.
 class MotionLimits {
  public:
   /// `max_velocity` caps those of the joints; `max_acceleration` holds for each [rad/s² or m/s²].
@@ -28,9 +29,8 @@ class MotionLimits {
   const JointVector& velocity() const { return velocity_; }
   double acceleration() const { return acceleration_; }
 
-  /// False if nothing is left, which happens only when a step is longer than the one before; then the position limit
-  /// wins over the acceleration.
-  bool box(const JointVector& q, const JointVector& velocity, double previous_dt, double dt, MotionBox& box) const;
+  /// Never empty if the steps before kept to theirs; the lengths of steps may differ as they like.
+  void box(const JointVector& q, const JointVector& velocity, double previous_dt, double dt, MotionBox& box) const;
 
  private:
   JointVector lower_, upper_;

@@ -28,7 +28,6 @@ constexpr double kReached = 0.3;         // share of the tolerance
 constexpr double kFastest = 1e3;         // [rad/s or m/s] of a joint without a limit
 constexpr int kApproaches = 4;           // Gauss-Newton iterations, at most
 constexpr int kCorrections = 3;
-constexpr int kDeepestHalving = 10;
 
 }  // namespace
 
@@ -70,12 +69,9 @@ class Tracker::Implementation {
     publish();
   }
 
-  TrackedStep step(const RigidPose& target, double dt, int halvings) {
+  TrackedStep step(const RigidPose& target, double dt) {
     if (previous_dt == 0.0) previous_dt = dt;
-    if (!limits.box(q, velocity, previous_dt, dt, box) && dt > previous_dt && halvings < kDeepestHalving) {
-      step(target, 0.5 * dt, halvings + 1);
-      return step(target, 0.5 * dt, halvings + 1);
-    }
+    limits.box(q, velocity, previous_dt, dt, box);
     wishForNextStep(dt);
     const bool reachable = solveUnhurried(target, dt) || solveFromPreference(target, dt);
     guardAgainstOvershoot(dt);
@@ -278,7 +274,7 @@ TrackedStep Tracker::step(const Eigen::Isometry3d& X_base_target, double dt) {
   }
   const RigidPose target{X_base_target.linear(), X_base_target.translation()};
   if (!isRigid(target)) return implementation_->slowDown(dt);
-  const TrackedStep result = implementation_->step(target, dt, 0);
+  const TrackedStep result = implementation_->step(target, dt);
   implementation_->has_preference = false;
   return result;
 }

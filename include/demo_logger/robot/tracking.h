@@ -34,6 +34,7 @@ struct TrackedStep {
 /// Follows a moving target pose of the tip, one step at a time, with a motion that the arm can make. Each step
 /// minimises the pose error at its end among the displacements Δq that keep
 ///   lower ≤ q ≤ upper,   |Δq / dt| ≤ velocity limit,   |Δq / dt − the step before's| ≤ max_acceleration dt
+/// (dt there being the mean of the two steps' lengths)
 /// and from which the arm can still stop before its position limits. The limits hold whatever the target does. In what
 /// the target leaves open (a seventh joint, a singular posture) the arm moves on smoothly and away from its limits.
 /// Out of reach, position comes before orientation. Continuous joints are never wrapped.
@@ -50,9 +51,8 @@ class Tracker {
   /// At rest at `q`, moved to the limits if it is beyond. Throws ModelError if it is not of size n or not finite.
   void reset(const Eigen::VectorXd& q);
 
-  /// Moves on by `dt` [s]. A target that is not finite or not a rigid pose makes the arm slow down. A step much longer
-  /// than the one before is made of shorter ones if the limits ask for it. Throws ConfigurationError for a dt that is
-  /// not positive.
+  /// Moves on by `dt` [s]. A target that is not finite or not a rigid pose makes the arm slow down. Steps may
+  /// differ in length. Throws ConfigurationError for a dt that is not positive.
   TrackedStep step(const Eigen::Isometry3d& X_base_target, double dt);
 
   /// How well the arm as it stands meets a target, without moving: for the first row of a path.
