@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
     addRecoverVerb(tool, exit_code);
     addKinematicsVerb(tool, exit_code);
     addIkVerb(tool, exit_code);
+    addTorqueVerb(tool, exit_code);
     try {
       tool.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -19,5 +19,6 @@ void addCheckVerb(CLI::App& tool, int& exit_code);
 void addRecoverVerb(CLI::App& tool, int& exit_code);
 void addKinematicsVerb(CLI::App& tool, int& exit_code);
 void addIkVerb(CLI::App& tool, int& exit_code);
+void addTorqueVerb(CLI::App& tool, int& exit_code);
 
 }  // namespace demo_logger

@@ -58,7 +58,7 @@ class DemoToolTest : public testing::Test {
 TEST_F(DemoToolTest, EveryVerbExplainsItselfWithAnExample) {
   const Outcome all = run("--help");
   EXPECT_EQ(all.exit_code, 0);
-  for (const std::string verb : {"import", "info", "check", "recover", "kinematics", "ik"}) {
+  for (const std::string verb : {"import", "info", "check", "recover", "kinematics", "ik", "torque"}) {
     EXPECT_NE(all.out.find(verb), std::string::npos);
     const Outcome help = run(verb + " --help");
     EXPECT_EQ(help.exit_code, 0);

@@ -1,0 +1,99 @@
+#include "src/tool/recording_conversion.h"
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "demo_logger/formats/sidecar.h"
+#include "demo_logger/trajectory/error.h"
+#include "src/ros/version.h"
+#include "src/tool/output_plan.h"
+#include "src/tool/verbs.h"
+
+namespace demo_logger {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string describeStep(std::string step, const RobotDescription& arm, const ConversionOptions& options) {
+  step += " --base " + arm.base + " --tip " + arm.tip;
+  for (const std::string& at : options.robot.at) step += " --at " + at;
+  return step;
+}
+
+/// Whose arm it was, and what was done.
+void noteOrigin(const std::filesystem::path& input, const RobotDescription& arm, const std::string& step,
+                Metadata& metadata) {
+  metadata.robot.name = arm.name;
+  metadata.robot.urdf_sha256 = arm.urdf_sha256;
+  metadata.robot.base = arm.base;
+  metadata.robot.tip = arm.tip;
+  if (metadata.robot.joints.empty()) metadata.robot.joints = arm.jointNames();
+  metadata.software = kSoftware;
+  metadata.provenance.parent = input.filename().string();
+  metadata.provenance.steps.push_back(step);
+}
+
+/// Two files each, so their places are judged before any is written.
+void refuseSidecarsThatAreThere(const std::vector<InputAndOutput>& plan) {
+  for (const InputAndOutput& entry : plan) {
+    const std::filesystem::path sidecar = sidecarPath(entry.output);
+    if (std::filesystem::exists(sidecar)) {
+      throw FileError(sidecar.string() +
+                      ": exists already and is not overwritten; choose another name, or add --force");
+    }
+  }
+}
+
+}  // namespace
+
+void addConversionOptions(CLI::App& verb, ConversionOptions& options, const std::string& inputs) {
+  verb.add_option("IN", options.inputs, inputs)->required();
+  verb.add_option("-o,--output", options.output, "recording to write; of several inputs the directory for theirs")
+      ->required();
+  addRobotOptions(verb, options.robot);
+  verb.add_option("--jobs", options.jobs, "recordings worked on at once")
+      ->capture_default_str()
+      ->check(CLI::Range(1U, 256U));
+  verb.add_flag("--force", options.force, "overwrite what is there");
+  verb.add_flag("--json", options.json, "print one JSON object instead");
+}
+
+int convertRecordings(const ConversionOptions& options, const std::string& step,
+                      const std::function<ConversionReport(const RobotDescription&, LoadedDemonstration&)>& convert) {
+  const RobotDescription arm = describeRobot(options.robot);
+  const std::vector<InputAndOutput> plan = planOutputs(options.inputs, options.output, options.force);
+  if (!options.force) refuseSidecarsThatAreThere(plan);
+  std::vector<LoadedDemonstration> recordings(plan.size());
+  std::vector<ConversionReport> reports(plan.size());
+  runJobs(plan.size(), options.jobs, [&](std::size_t i) {
+    recordings[i] = readDemonstration(plan[i].input);
+    try {
+      reports[i] = convert(arm, recordings[i]);
+    } catch (const ConfigurationError& error) {
+      throw FileError(plan[i].input.string() + ": " + error.what());
+    }
+    noteOrigin(plan[i].input, arm, describeStep(step, arm, options), recordings[i].demonstration.metadata);
+  });
+  makeDirectories(plan);
+  int exit_code = kDone;
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const std::string output = plan[i].output.string();
+    const Demonstration& demonstration = recordings[i].demonstration;
+    writeDemonstration(plan[i].output, demonstration, options.force);
+    if (reports[i].has_findings) exit_code = kFindings;
+    ordered_json object = {{"file", plan[i].input.string()},
+                           {"output", output},
+                           {"rows", demonstration.time.size()},
+                           {"notes", recordings[i].notes}};
+    if (reports[i].figures) reports[i].figures(object);
+    list.push_back(std::move(object));
+    if (options.json) continue;
+    for (const std::string& note : recordings[i].notes) std::cout << "note: " << note << '\n';
+    std::cout << output << ": " << demonstration.time.size() << " rows " << reports[i].sentence << '\n';
+  }
+  if (options.json) std::cout << ordered_json{{"recordings", list}}.dump(2) << '\n';
+  return exit_code;
+}
+
+}  // namespace demo_logger

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "demo_logger/formats/demonstration_file.h"
+#include "src/tool/robot_options.h"
+
+namespace demo_logger {
+
+/// What every verb takes that makes a recording with further columns out of each recording, by the robot's model.
+struct ConversionOptions {
+  std::vector<std::string> inputs;
+  std::string output;
+  RobotOptions robot;
+  unsigned jobs = 1;
+  bool force = false;
+  bool json = false;
+};
+
+/// What a conversion says of one recording.
+struct ConversionReport {
+  std::string sentence;                                  // "with the pose of tool0 in base_link"
+  std::function<void(nlohmann::ordered_json&)> figures;  // adds them to the JSON object of the recording, if given
+  bool has_findings = false;
+};
+
+/// Declares IN, -o, the robot's options, --jobs, --force, --json.
+void addConversionOptions(CLI::App& verb, ConversionOptions& options, const std::string& inputs);
+
+/// Converts all inputs, in parallel, and writes only when all have succeeded. `step` with the robot's options goes into
+/// the provenance. `convert` works on the recording, may add to its notes, and throws ConfigurationError, which gets
+/// the file's name in front. Returns the exit code.
+int convertRecordings(const ConversionOptions& options, const std::string& step,
+                      const std::function<ConversionReport(const RobotDescription&, LoadedDemonstration&)>& convert);
+
+}  // namespace demo_logger

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "demo_logger/pipelines/human_torque.h"
+#include "demo_logger/trajectory/print.h"
+#include "src/tool/recording_conversion.h"
+#include "src/tool/verbs.h"
+
+namespace demo_logger {
+namespace {
+
+struct Options {
+  ConversionOptions conversion;
+  std::string effort;
+  std::string side;
+  std::optional<double> control_period;
+  bool gravity_compensated = false;
+  double max_gap = HumanTorqueOptions().max_gap;
+};
+
+/// What the recording says of its efforts, corrected by the command line.
+EffortMetadata meaningOf(const EffortMetadata& recorded, const Options& options) {
+  EffortMetadata meaning = recorded;
+  if (!options.effort.empty()) meaning.timing = options.effort;
+  if (!options.side.empty()) meaning.side = options.side;
+  if (options.control_period) meaning.control_period = *options.control_period;
+  return meaning;
+}
+
+std::string stepOf(const Options& options) {
+  std::string step = "torque";
+  if (!options.effort.empty()) step += " --effort " + options.effort;
+  if (!options.side.empty()) step += " --side " + options.side;
+  if (options.control_period) step += " --control-period " + print(*options.control_period);
+  if (options.gravity_compensated) step += " --gravity-compensated";
+  return step + " --max-gap " + print(options.max_gap);
+}
+
+ConversionReport addTorques(const RobotDescription& arm, LoadedDemonstration& recording, const Options& options) {
+  HumanTorqueOptions torque;
+  torque.effort = meaningOf(recording.demonstration.metadata.effort, options);
+  torque.gravity_compensated = options.gravity_compensated;
+  torque.max_gap = options.max_gap;
+  const HumanTorqueSummary summary = addHumanTorque(arm, recording.demonstration, torque);
+  recording.notes.insert(recording.notes.end(), summary.notes.begin(), summary.notes.end());
+
+  ConversionReport report;
+  const std::size_t rows = recording.demonstration.time.size();
+  report.has_findings = summary.rows < rows;
+  const auto largest = std::max_element(summary.largest_torque.begin(), summary.largest_torque.end());
+  report.sentence = "with the human's torque in " + std::to_string(summary.rows) + " of them, at most " +
+                    print(*largest) + " at " +
+                    arm.jointNames()[static_cast<std::size_t>(largest - summary.largest_torque.begin())];
+  report.figures = [summary](nlohmann::ordered_json& object) {
+    object["rows_with_torque"] = summary.rows;
+    object["encoder_noise"] = summary.encoder_noise;
+    object["largest_torque"] = summary.largest_torque;
+  };
+  return report;
+}
+
+}  // namespace
+
+void addTorqueVerb(CLI::App& tool, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = tool.add_subcommand("torque", "recordings get the torque that the human's hand exerted");
+  addConversionOptions(*verb, options->conversion,
+                       "recordings (*.csv) with columns q_<joint> and tau_<joint> of each joint, or directories");
+  verb->add_option("--effort", options->effort,
+                   "instant: efforts were measured at the stamp; held: they are commands, in force until the next tick "
+                   "(default: as the recording says)")
+      ->check(CLI::IsMember({"instant", "held"}));
+  verb->add_option("--side", options->side,
+                   "of the gears that efforts were measured on (default: as the recording says)")
+      ->check(CLI::IsMember({"motor", "link"}));
+  verb->add_option("--control-period", options->control_period,
+                   "[s] of the arm's controller, for held efforts (default: as the recording says)")
+      ->check(CLI::PositiveNumber);
+  verb->add_flag("--gravity-compensated", options->gravity_compensated,
+                 "the arm was compensated for gravity alone; efforts are not needed");
+  verb->add_option("--max-gap", options->max_gap, "[s] nothing is concluded across a longer silence")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  verb->footer(
+      "Example: demo_tool torque demos/demo_000001.csv -o taught.csv --urdf arm.urdf --base base_link --tip tool0\n"
+      "Adds tau_h_<joint> with tau_h_std_<joint>, the smoothed dq_<joint> and ddq_<joint>, and the force at the tool\n"
+      "tool_fx … tool_tz in base axes with tool_condition; such columns that are there are replaced.\n"
+      "Exit code: 1 if a row got no torque.");
+  verb->callback([options, &exit_code] {
+    exit_code = convertRecordings(options->conversion, stepOf(*options),
+                                  [&](const RobotDescription& arm, LoadedDemonstration& recording) {
+                                    return addTorques(arm, recording, *options);
+                                  });
+  });
+}
+
+}  // namespace demo_logger
