@@ -10,6 +10,12 @@
 namespace demo_logger {
 namespace {
 
+Range anyNumber(const std::string& unit) {
+  Range range;
+  range.unit = unit;
+  return range;
+}
+
 SensorConfiguration readSensors(Parameters parameters) {
   SensorConfiguration sensors;
   sensors.position_noise = parameters.number("position_noise", sensors.position_noise, {0.0, INFINITY, "rad or m"});
@@ -17,7 +23,7 @@ SensorConfiguration readSensors(Parameters parameters) {
       parameters.number("position_resolution", sensors.position_resolution, {0.0, INFINITY, "rad or m"});
   sensors.velocity_noise = parameters.number("velocity_noise", sensors.velocity_noise, {0.0, INFINITY, "rad/s or m/s"});
   sensors.effort_noise = parameters.number("effort_noise", sensors.effort_noise, {0.0, INFINITY, "N m or N"});
-  sensors.position_bias = parameters.numbers("position_bias", {}, {-INFINITY, INFINITY, "rad or m"});
+  sensors.position_bias = parameters.numbers("position_bias", {}, anyNumber("rad or m"));
   sensors.velocity_from_positions = parameters.flag("velocity_from_positions", sensors.velocity_from_positions);
   sensors.velocity_cutoff = parameters.number("velocity_cutoff", sensors.velocity_cutoff, {0.0, INFINITY, "Hz"});
   sensors.effort_side =
@@ -51,7 +57,7 @@ std::vector<double> readNumbers(Parameters& parameters, const std::string& key, 
 }
 
 Eigen::Vector3d readVector(Parameters& parameters, const std::string& key, const std::string& unit) {
-  const std::vector<double> numbers = readNumbers(parameters, key, 3, {0.0, 0.0, 0.0}, {-INFINITY, INFINITY, unit});
+  const std::vector<double> numbers = readNumbers(parameters, key, 3, {0.0, 0.0, 0.0}, anyNumber(unit));
   return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -92,8 +98,7 @@ std::optional<BodyInertia> readLoad(Parameters& parameters) {
   BodyInertia load;
   load.mass = group.number("mass", 0.0, {0.0, 1000.0, "kg"});
   load.center = readVector(group, "center", "m");
-  const std::vector<double> moments =
-      readNumbers(group, "inertia", 6, std::vector<double>(6, 0.0), {-INFINITY, INFINITY, "kg m2"});
+  const std::vector<double> moments = readNumbers(group, "inertia", 6, std::vector<double>(6, 0.0), anyNumber("kg m2"));
   load.inertia << moments[0], moments[1], moments[2], moments[1], moments[3], moments[4], moments[2], moments[4],
       moments[5];
   group.rejectUnknown();

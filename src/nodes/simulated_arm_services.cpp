@@ -171,8 +171,8 @@ bool SimulatedArmNode::saveState(std_srvs::Trigger::Request& /*request*/, std_sr
   try {
     std::filesystem::create_directories(folder);
     for (int number = 1; number < kMostFiles; ++number) {
-      std::string name = std::to_string(number);
-      name = "arm_state_" + std::string(6 - name.size(), '0') + name + ".json";
+      const std::string digits = std::to_string(number);
+      const std::string name = "arm_state_" + std::string(6 - digits.size(), '0') + digits + ".json";
       if (std::filesystem::exists(folder / name)) continue;
       writeFileAtomically(folder / name, state);
       response.success = 1U;

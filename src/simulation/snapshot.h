@@ -56,7 +56,7 @@ class Snapshot {
       if (!reading_) json_[key] = nullptr;
       return;
     }
-    if (reading_) value.emplace();
+    if (reading_) value = Value{};
     part(key, [&](Snapshot& inside) { exchange(inside, *value); });
   }
 
