@@ -16,7 +16,10 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-constexpr double kWish = 1e-5;      // weight of the wanted displacement: errs by less than 1e-6 m or rad
+// Weight of the wanted displacement. It errs by half its root of how far the wish is off: 1e-6 m or rad for the
+// comfortable motion, 1e-4 for a preferred one, which in return keeps its way through singular postures.
+constexpr double kComfortWeight = 1e-5;
+constexpr double kPreferenceWeight = 1e-4;
 constexpr double kSettling = 0.05;  // [s] in which the motion that the target leaves open takes the wanted velocity
 constexpr double kPull = 10.0;      // [1/s] towards a preferred posture
 constexpr double kCalming = 0.5;    // per weighed error that no posture removes: the curvature of the reach's edge
@@ -99,8 +102,8 @@ class Tracker::Implementation {
     return {TrackingStatus::unreachable, kNan, kNan};
   }
 
-  /// Where the target leaves it open, the arm moves on as it did, and takes on the velocity of a comfortable or the
-  /// preferred motion. Moving on is what leads through singular postures.
+  /// Where the target leaves it open, the arm makes the preferred motion; or without one moves on as it did, which
+  /// leads through singular postures, and gradually takes on the velocity of a comfortable motion.
   void wishForNextStep(double dt) {
     if (has_preference) {
       wanted = preferred_velocity + kPull * (preferred - dt * preferred_velocity - q);
@@ -109,8 +112,9 @@ class Tracker::Implementation {
       comfortVelocity(q, limits, solver, wanted);
     }
     const double share = std::min(1.0, dt / kSettling);
-    wishes.weight = kWish;
-    wishes.displacement = dt * (velocity + share * (wanted - velocity));
+    wishes.weight = has_preference ? kPreferenceWeight : kComfortWeight;
+    wishes.displacement = dt * wanted;
+    if (!has_preference) wishes.displacement = dt * (velocity + share * (wanted - velocity));
     wishes.calm = (1.0 - share) * dt * velocity;
   }
 
