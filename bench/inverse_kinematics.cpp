@@ -172,14 +172,16 @@ Score score(const RobotDescription& arm, int poses, bool random_seed, double tol
 }
 
 void printRow(const std::string& arm, const char* seed, const char* solver, Score& score) {
-  std::printf("| %s | %s | %s | %d | %d | %d | %d | %.1f | %.1f | %.0f | %.0f |\n", arm.c_str(), seed, solver, score.poses,
-              score.poses - score.solved, score.out_of_limits, score.false_claims, score.mean(), score.quantile(0.5),
-              score.quantile(0.99), score.quantile(0.999));
+  std::printf("| %s | %s | %s | %d | %d | %d | %d | %.1f | %.1f | %.0f | %.0f |\n", arm.c_str(), seed, solver,
+              score.poses, score.poses - score.solved, score.out_of_limits, score.false_claims, score.mean(),
+              score.quantile(0.5), score.quantile(0.99), score.quantile(0.999));
 }
 
 void measureSolve(const std::vector<Subject>& subjects, int poses) {
   std::printf("## Random reachable poses\n\n");
-  std::printf("| arm | seed | solver | poses | not solved | out of limits | claimed but wrong | mean µs | p50 | p99 | p99.9 |\n");
+  std::printf(
+      "| arm | seed | solver | poses | not solved | out of limits | claimed but wrong | mean µs | p50 | p99 | p99.9 "
+      "|\n");
   std::printf("|---|---|---|---|---|---|---|---|---|---|---|\n");
   Score all, fine, newton_all, marquardt_all;
   for (const Subject& subject : subjects) {
@@ -197,8 +199,9 @@ void measureSolve(const std::vector<Subject>& subjects, int poses) {
       Score at5 = score(subject.arm, poses, random_seed, 1e-5 + 1e-12, ours(1e-5));
       Score at9 = score(subject.arm, poses, random_seed, 1e-9 + 1e-12, ours(1e-9));
       const double peer_tolerance = std::sqrt(3.0) * 1e-5;  // they test each component
-      Score newton = score(subject.arm, poses / 10, random_seed, peer_tolerance,
-                           [&](const auto& target, const auto& start, auto& q) { return peers.newton(target, start, q); });
+      Score newton =
+          score(subject.arm, poses / 10, random_seed, peer_tolerance,
+                [&](const auto& target, const auto& start, auto& q) { return peers.newton(target, start, q); });
       Score marquardt =
           score(subject.arm, poses / 10, random_seed, peer_tolerance,
                 [&](const auto& target, const auto& start, auto& q) { return peers.marquardt(target, start, q); });
@@ -280,7 +283,9 @@ void measureTracking(const std::vector<Subject>& subjects) {
   const PathLimits limits;
   std::printf("\n## Tracking, 10 s, velocity at most %.1f rad/s, acceleration %.0f rad/s²\n\n", limits.velocity,
               limits.acceleration);
-  std::printf("| arm | path | Hz | foresight | worst mm | worst mrad | steps within 1 mm and 1 mrad %% | limit violations | µs a step | beyond true distance mm | back after ms |\n");
+  std::printf(
+      "| arm | path | Hz | foresight | worst mm | worst mrad | steps within 1 mm and 1 mrad %% | limit violations | µs "
+      "a step | beyond true distance mm | back after ms |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Subject& subject : subjects) {
     for (const double rate : {100.0, 1000.0}) {

@@ -10,8 +10,8 @@
 
 namespace demo_logger {
 
-/// How far a point is from all positions that the tip can take within joint limits: least squares on the position alone,
-/// by KDL, from the posture found last and from random ones. An upper bound that many starts make tight.
+/// How far a point is from all positions that the tip can take within joint limits: least squares on the position
+/// alone, by KDL, from the posture found last and from random ones. An upper bound that many starts make tight.
 class ReachableDistance {
  public:
   explicit ReachableDistance(const RobotDescription& arm) : arm_(arm), model_(arm) {

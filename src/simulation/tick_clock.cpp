@@ -12,7 +12,9 @@ constexpr Nanoseconds kLongestCatchUp = 100'000'000;
 }  // namespace
 
 TickClock::TickClock(const Configuration& configuration, Nanoseconds steady_now, Nanoseconds ros_now)
-    : configuration_(configuration), stamp_(configuration.own_time ? configuration.first_stamp : ros_now), due_(steady_now) {}
+    : configuration_(configuration),
+      stamp_(configuration.own_time ? configuration.first_stamp : ros_now),
+      due_(steady_now) {}
 
 void TickClock::advance(Nanoseconds steady_now, Nanoseconds ros_now) {
   const Nanoseconds period = configuration_.period;

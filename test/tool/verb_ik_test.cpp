@@ -45,8 +45,7 @@ TEST(VerbIkTest, WritesOneRowPerPoseInOrderWithTheStatusLast) {
   run.write("poses.csv", poses);
   const auto outcome = run("ik poses.csv -o joints.csv --tolerance 1e-9" + kDemoArm);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
-  EXPECT_NE(outcome.out.find("joints.csv: 200 rows: 200 solved, largest residual "), std::string::npos)
-      << outcome.out;
+  EXPECT_NE(outcome.out.find("joints.csv: 200 rows: 200 solved, largest residual "), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.err, "");
   const auto table = run.cells("joints.csv");
   ASSERT_EQ(table.size(), 201U);

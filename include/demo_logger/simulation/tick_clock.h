@@ -18,7 +18,7 @@ class TickClock {
   struct Configuration {
     Nanoseconds period = 1'000'000;
     bool own_time = false;
-    double speed = 1.0;  // own time only; 0: as fast as it goes
+    double speed = 1.0;                               // own time only; 0: as fast as it goes
     Nanoseconds first_stamp = kNanosecondsPerSecond;  // own time only
   };
 
