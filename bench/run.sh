@@ -2,16 +2,17 @@
 # Builds the measurements and runs them: writes the tables of doc/benchmarks/ with the machine and the date.
 set -euo pipefail
 if [ "${1:-}" = --help ]; then
-  echo "usage: bench/run.sh [recording_cost|robot_model|simulated_arm|synchronisation_error] [options of recording_cost.py]"
-  echo "Needs what scripts/test.sh installs. About 15 minutes for all; without a name it runs all."
-  echo "robot_model also measures the arms in the folder that DEMO_LOGGER_URDF names."
+  echo "usage: bench/run.sh [MEASUREMENT [options of recording_cost.py]]"
+  echo "Measurements: inverse_kinematics recording_cost robot_model simulated_arm synchronisation_error."
+  echo "Needs what scripts/test.sh installs. About 25 minutes for all; without a name it runs all."
+  echo "inverse_kinematics and robot_model also measure the arms in the folder that DEMO_LOGGER_URDF names."
   exit 0
 fi
 project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 which=${1:-all}
 [ $# -eq 0 ] || shift
 case $which in
-  all | recording_cost | robot_model | simulated_arm | synchronisation_error) ;;
+  all | inverse_kinematics | recording_cost | robot_model | simulated_arm | synchronisation_error) ;;
   *) echo "run.sh: unknown measurement \"$which\"; --help shows what there is" >&2; exit 2 ;;
 esac
 cmake -S "$project" -B "$project/build" -DDEMO_LOGGER_BENCH=ON >/dev/null
@@ -68,6 +69,9 @@ simulatedArm() {
 
 if wanted robot_model; then
   measure "Inverse dynamics: cost and agreement" "$project/doc/benchmarks/robot_model.md" robotModel
+fi
+if wanted inverse_kinematics; then
+  measure "Inverse kinematics" "$project/doc/benchmarks/inverse_kinematics.md" "$programs/inverse_kinematics"
 fi
 if wanted simulated_arm; then
   measure "What a simulated millisecond costs" "$project/doc/benchmarks/simulated_arm.md" simulatedArm

@@ -29,7 +29,9 @@ constexpr double kFurthest = 0.5;        // [rad or m] … within this
 constexpr double kCatchUp = 0.7;         // share of the acceleration planned for catching up; the target needs some too
 constexpr double kReached = 0.3;         // share of the tolerance
 constexpr double kFastest = 1e3;         // [rad/s or m/s] of a joint without a limit
-constexpr int kApproaches = 4;           // Gauss-Newton iterations, at most
+constexpr double kLongestPart = 0.005;   // [s]
+constexpr int kMostParts = 4;
+constexpr int kApproaches = 4;  // Gauss-Newton iterations, at most
 constexpr int kCorrections = 3;
 
 }  // namespace
@@ -70,6 +72,29 @@ class Tracker::Implementation {
     position_first = false;
     out_of_reach = 0.0;
     publish();
+  }
+
+  /// Long steps are made of shorter ones towards poses in between: the linear model then holds on the whole way. What
+  /// holds for the velocities and accelerations of the parts holds for those of the whole.
+  TrackedStep stepInParts(const RigidPose& target, double dt) {
+    const int parts = std::clamp(static_cast<int>(std::ceil(dt / kLongestPart - 1e-6)), 1, kMostParts);
+    if (parts == 1 || !has_last_target) return step(target, dt);
+    const RigidPose from = last_target;
+    const Vector6 way = poseError(target, from);
+    const JointVector posture_at_end = preferred;
+    const bool preference = has_preference;
+    for (int part = 1; part < parts; ++part) {
+      const double share = static_cast<double>(part) / parts;
+      const Eigen::Vector3d turn = share * way.tail<3>();
+      RigidPose between = from;
+      between.p += share * way.head<3>();
+      const double angle = turn.norm();
+      if (angle > 0.0) between.R = Eigen::AngleAxisd(angle, turn / angle) * from.R;
+      if (preference) preferred = posture_at_end - (1.0 - share) * dt * preferred_velocity;
+      step(between, dt / parts);
+    }
+    if (preference) preferred = posture_at_end;
+    return step(target, dt / parts);
   }
 
   TrackedStep step(const RigidPose& target, double dt) {
@@ -222,7 +247,7 @@ class Tracker::Implementation {
   double out_of_reach = 0.0;  // weighed error that is left however long the arm may take
   JointVector preferred, preferred_velocity;
   bool has_preference = false;
-  Eigen::VectorXd public_q, public_velocity;
+  Eigen::VectorXd public_q, public_velocity, q_before;
 
   // Within a step.
   MotionBox box, wide;
@@ -278,7 +303,9 @@ TrackedStep Tracker::step(const Eigen::Isometry3d& X_base_target, double dt) {
   }
   const RigidPose target{X_base_target.linear(), X_base_target.translation()};
   if (!isRigid(target)) return implementation_->slowDown(dt);
-  const TrackedStep result = implementation_->step(target, dt);
+  const Eigen::VectorXd& before = implementation_->q_before = implementation_->public_q;
+  const TrackedStep result = implementation_->stepInParts(target, dt);
+  implementation_->public_velocity = (implementation_->public_q - before) / dt;
   implementation_->has_preference = false;
   return result;
 }

@@ -147,6 +147,18 @@ TEST(TrackingTest, ATargetAtRestIsReachedAndHeldWithoutOvershoot) {
   EXPECT_LT(after, kMillimetre) << "once there it stays";
 }
 
+TEST(TrackingTest, VelocityIsTheMeanOfTheLastStep) {
+  const RobotDescription arm = describeOwnArm("demo_arm");
+  const TrackingPath path = TrackingPaths(arm, 50.0, {kVelocity, kAcceleration}).nominal();
+  Tracker tracker(arm, measuredOptions());
+  tracker.reset(path.start);
+  for (std::size_t k = 0; k < 50; ++k) {
+    const Eigen::VectorXd before = tracker.q();
+    tracker.step(path.poses[k], 0.02);
+    EXPECT_LT((tracker.velocity() - (tracker.q() - before) / 0.02).norm(), 1e-12);
+  }
+}
+
 TEST(TrackingTest, TheFirstStepsFromRestAreSpeedLimitedAndSaidToBe) {
   const RobotDescription arm = describeOwnArm("demo_arm");
   Eigen::VectorXd start(7);
