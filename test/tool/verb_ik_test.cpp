@@ -184,6 +184,76 @@ TEST(VerbIkTest, ManyTablesGoIntoADirectoryAndJsonIsOneObject) {
   EXPECT_TRUE(run.exists("joints/a.csv"));
 }
 
+/// A hand that moves 0.2 m along x and back, from rest to rest.
+std::string handMotion(bool with_time) {
+  std::string poses =
+      with_time ? "time,x,y,z,qx,qy,qz,qw,q0_joint_1,q0_joint_2\n" : "x,y,z,qx,qy,qz,qw,q0_joint_1,q0_joint_2\n";
+  const RobotModel kdl(describeOwnArm("two_link"));
+  for (int k = 0; k <= 200; ++k) {
+    const double t = 0.01 * k;
+    const double s = 0.5 * (1.0 - std::cos(M_PI * t));
+    std::vector<double> row = rowOf(kdl.forwardKinematics(Eigen::Vector2d(0.3 + 0.5 * s, 0.9 - 0.3 * s)));
+    if (with_time) row.insert(row.begin(), t);
+    row.push_back(0.3);
+    row.push_back(0.9);
+    appendRowOf(poses, row);
+  }
+  return poses;
+}
+
+TEST(VerbIkTest, TrackStartsAtRestAtTheSeedAndKeepsTheLimits) {
+  const ToolRun run;
+  run.write("timed.csv", handMotion(true));
+  run.write("rows.csv", handMotion(false));
+  for (const std::string arguments : {"timed.csv", "rows.csv --rate 100", "timed.csv --no-foresight"}) {
+    const auto outcome =
+        run("ik " + arguments + " -o joints.csv --force --mode track --max-velocity 3 --max-acceleration 5" + kTwoLink);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+    EXPECT_NE(outcome.out.find("joints.csv: 201 rows: 201 tracked, "), std::string::npos) << outcome.out;
+    const auto table = run.cells("joints.csv");
+    ASSERT_EQ(table.size(), 202U);
+    const std::size_t first = arguments == "rows.csv --rate 100" ? 0 : 1;
+    EXPECT_EQ(table[1][first], "0.3");
+    EXPECT_EQ(table[1][first + 1], "0.9");
+    for (std::size_t k = 2; k < table.size(); ++k) {
+      EXPECT_EQ(table[k].back(), "tracked");
+      const double now = std::stod(table[k][first]), last = std::stod(table[k - 1][first]);
+      const double before = k > 2 ? std::stod(table[k - 2][first]) : last;
+      EXPECT_LE(std::abs(now - last) / 0.01, 3.0);
+      EXPECT_LE(std::abs(now - 2.0 * last + before) / 1e-4, 5.0);
+    }
+    EXPECT_NEAR(std::stod(table.back()[first]), 0.3, 1e-3);
+  }
+}
+
+TEST(VerbIkTest, TrackSaysWhatKeptItFromTheTarget) {
+  const ToolRun run;
+  std::string poses = "x,y,z,qx,qy,qz,qw,q0_joint_1,q0_joint_2\n";
+  for (int k = 0; k < 50; ++k) poses += "0.4,0,0.5,0,0.3,0,0.95,0.2,0.3\n";
+  for (int k = 0; k < 300; ++k) poses += "1.5,0,0.5,0,0.3,0,0.95,0.2,0.3\n";
+  poses += "NaN,0,0.5,0,0.3,0,0.95,0.2,0.3\n";
+  run.write("poses.csv", poses);
+  const auto outcome = run("ik poses.csv -o joints.csv --mode track --json" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 1);
+  const auto status = nlohmann::json::parse(outcome.out)["tables"][0]["status"];
+  EXPECT_GT(status["speed_limited"].get<int>() + status["unreachable"].get<int>(), 300);
+  const auto table = run.cells("joints.csv");
+  EXPECT_EQ(table[349].back(), "unreachable");
+  EXPECT_EQ(table[351].back(), "unreachable");
+  EXPECT_EQ(table[351][2], "NaN") << "no target, no residual; the joints slow down";
+  EXPECT_NE(table[351][0], "NaN");
+}
+
+TEST(VerbIkTest, TimesThatGoBackCannotBeTracked) {
+  const ToolRun run;
+  run.write("poses.csv", "time,x,y,z,qx,qy,qz,qw\n0,0,0,0.9,0,0,0,1\n0.1,0,0,0.9,0,0,0,1\n0.1,0,0,0.9,0,0,0,1\n");
+  const auto outcome = run("ik poses.csv -o joints.csv --mode track" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.err,
+            "poses.csv:4: time 0.100000 s does not follow the row before; to track, times must strictly increase\n");
+  EXPECT_FALSE(run.exists("joints.csv"));
+}
+
 TEST(VerbKinematicsTest, AddsThePoseOfTheClosedFormAndKeepsEverythingElse) {
   const ToolRun run;
   run.write("motion.csv", "time,q_joint_2,note,q_joint_1\n0,0.5,7,0\n0.1,NaN,8,0\n");
