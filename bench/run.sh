@@ -46,8 +46,11 @@ wanted() { [ "$which" = all ] || [ "$which" = "$1" ]; }
 withPeers() {
   local folder=$1
   shift
-  python3 -m venv "$folder" >/dev/null 2>&1 && "$folder/bin/pip" install --quiet "$@" >/dev/null 2>&1 || true
-  if [ -x "$folder/bin/python" ]; then echo "$folder/bin/python"; else echo python3; fi
+  if { python3 -m venv "$folder" && "$folder/bin/pip" install --quiet "$@"; } >/dev/null 2>&1; then
+    echo "$folder/bin/python"
+  else
+    echo python3
+  fi
 }
 
 robotModel() {
