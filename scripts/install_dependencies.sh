@@ -29,7 +29,7 @@ build_packages=(
 # To launch the nodes, to call their services and look at their topics, and to draw what they recorded.
 run_packages=(
   python3-geometry-msgs python3-matplotlib python3-numpy python3-roslaunch python3-rosservice python3-rostopic
-  python3-sensor-msgs python3-std-srvs ros-robot-state-publisher rosbash
+  python3-sensor-msgs python3-std-srvs python3-trajectory-msgs ros-robot-state-publisher rosbash
 )
 
 # To run the tests: independent peers (kdl_parser, the JSON Schema), rosbag play, a locale with a decimal comma, and

@@ -84,6 +84,10 @@ AtomicFile::AtomicFile(std::filesystem::path path, bool overwrite)
   if (!overwrite_ && isThere(path_)) {
     throw alreadyThere(path_);
   }
+  if (isThere(path_) && !std::filesystem::is_regular_file(path_) && !std::filesystem::is_symlink(path_)) {
+    throw FileError(path_.string() +
+                    ": is a device or the like, not a file that can be replaced; choose another name.");
+  }
   descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kFileMode);
   if (descriptor_ < 0) {
     throw FileError(path_.string() + ": cannot be created (" + reason(errno) +

@@ -137,8 +137,8 @@ bool SimulatedArmNode::applyWrench(ApplyWrench::Request& request, ApplyWrench::R
     response.message = why + ".";
     return true;
   }
-  if (!wrench.force.allFinite() || !wrench.torque.allFinite()) {
-    response.message = "the wrench has a component that is not a number.";
+  if (const std::string refusal = whyNotApplied(wrench); !refusal.empty()) {
+    response.message = refusal + ".";
     return true;
   }
   const std::lock_guard<std::mutex> lock(mutex_);

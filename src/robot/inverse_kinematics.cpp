@@ -23,7 +23,7 @@ constexpr int kStartsOutOfReach = 20;  // enough for the best residual of what t
 /// The best posture so far: solved ones before others, among solved ones the nearest to the seed.
 class BestPosture {
  public:
-  BestPosture(double tolerance, const JointVector& seed) : tolerance_(tolerance), seed_(seed) {}
+  BestPosture(double tolerance, const JointVector& seed) : tolerance_(tolerance), seed_(seed), q_(seed) {}
 
   bool solved() const { return solved_; }
   bool isNear() const { return solved_ && move_ < kNearEnough; }

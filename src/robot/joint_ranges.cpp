@@ -8,6 +8,7 @@ namespace demo_logger {
 namespace {
 
 constexpr double kTurn = 2.0 * M_PI;
+constexpr double kHalfOfAnOpenRange = 1.0;  // [rad or m]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// One step of SplitMix64: every counter gives an independent 64-bit number.
@@ -78,9 +79,14 @@ void JointRanges::randomPosture(std::uint64_t key, std::uint64_t counter, JointV
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const std::uint64_t bits = mixed(mixed(key) ^ (counter * n + static_cast<std::uint64_t>(i)));
     const double unit = static_cast<double>(bits >> 11U) * 0x1p-53;
-    const bool prismatic = !turns_[static_cast<std::size_t>(i)] && !std::isfinite(upper_[i] - lower_[i]);
-    const double from = std::max(lower_[i], prismatic ? -1.0 : -M_PI);
-    const double to = std::min(upper_[i], prismatic ? 1.0 : M_PI);
+    double from = lower_[i];
+    double to = upper_[i];
+    if (!std::isfinite(to - from)) {
+      const double half = turns_[static_cast<std::size_t>(i)] ? M_PI : kHalfOfAnOpenRange;
+      const double about = std::clamp(0.0, from + half, to - half);
+      from = about - half;
+      to = about + half;
+    }
     q[i] = from + unit * (to - from);
   }
 }

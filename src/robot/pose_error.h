@@ -22,10 +22,12 @@ inline double largerError(const Vector6& error) {
   return std::sqrt(std::max(error.head<3>().squaredNorm(), error.tail<3>().squaredNorm()));
 }
 
-/// Whether it is finite and its matrix a rotation, as far as a quaternion of a few digits makes one.
+/// Whether it is a place that one can compute with, its matrix a rotation as far as a quaternion of a few digits makes
+/// one.
 inline bool isRigid(const RigidPose& pose) {
   constexpr double kSlack = 1e-6;
-  return pose.p.allFinite() && pose.R.allFinite() &&
+  constexpr double kFarthest = 1e9;  // [m]
+  return pose.p.cwiseAbs().maxCoeff() <= kFarthest && pose.p.allFinite() && pose.R.allFinite() &&
          (pose.R.transpose() * pose.R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kSlack &&
          pose.R.determinant() > 0.0;
 }

@@ -12,6 +12,7 @@
 
 #include "body_inertia.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 #include "locked_joints.h"
 #include "near_names.h"
 #include "sha256.h"
@@ -250,8 +251,20 @@ RobotDescription withDrives(const RobotDescription& description, const std::map<
 
 RobotDescription withLoad(const RobotDescription& description, const BodyInertia& load) {
   if (description.joints.empty()) throw ModelError("the load needs an arm with at least one joint");
+  constexpr double kHeaviest = 1000.0;  // [kg] beyond that, and that far off, nothing moves an arm as an arm moves
+  constexpr double kFarthest = 10.0;    // [m]
   const std::string impossible = load.mass == 0.0 ? "no mass" : impossibility(load);
   if (!impossible.empty()) throw ModelError("the load at tip '" + description.tip + "' has " + impossible);
+  if (load.mass > kHeaviest) {
+    throw ModelError("the load at tip '" + description.tip + "' has a mass of " + print(load.mass) +
+                     " kg, expected at most " + print(kHeaviest) + " kg");
+  }
+  const double moment = kHeaviest * kFarthest * kFarthest;
+  if (load.center.norm() > kFarthest || load.inertia.cwiseAbs().maxCoeff() > moment) {
+    throw ModelError("the load at tip '" + description.tip + "' reaches " + print(load.center.norm()) +
+                     " m away with moments of inertia up to " + print(load.inertia.cwiseAbs().maxCoeff()) +
+                     " kg m², expected at most " + print(kFarthest) + " m and " + print(moment) + " kg m²");
+  }
   RobotDescription loaded = description;
   BodyInertia& last = loaded.joints.back().body;
   last = lumped(last, movedTo(loaded.X_lastlink_tip, load));

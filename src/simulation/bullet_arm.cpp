@@ -95,6 +95,7 @@ void BulletArm::restore(const ArmState& state, const Eigen::VectorXd& link_torqu
   Implementation& own = *implementation_;
   own.check("q", state.q);
   own.check("dq", state.dq);
+  own.checkLimits(state.q);
   if (link_torque.size() != 0) own.check("link torque", link_torque);
   own.state = state;
   own.friction.setZero();

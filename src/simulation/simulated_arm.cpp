@@ -79,8 +79,7 @@ ArmTick SimulatedArm::tick(Nanoseconds now, const std::vector<ArmCommand>& comma
   return tick;
 }
 
-std::string SimulatedArm::applyWrench(const LinkWrench& wrench, Nanoseconds until, const std::string& source) {
-  constexpr std::size_t kMost = 32;
+std::string whyNotApplied(const LinkWrench& wrench) {
   constexpr double kStrongest = 1e4;  // [N or N m] enough to break any arm
   const double strength = std::max(wrench.force.cwiseAbs().maxCoeff(), wrench.torque.cwiseAbs().maxCoeff());
   if (!wrench.force.allFinite() || !wrench.torque.allFinite() || !wrench.point.allFinite()) {
@@ -89,6 +88,13 @@ std::string SimulatedArm::applyWrench(const LinkWrench& wrench, Nanoseconds unti
   if (strength > kStrongest) {
     return "the wrench has a component of " + print(strength) + " N or N m, expected at most " + print(kStrongest);
   }
+  return "";
+}
+
+std::string SimulatedArm::applyWrench(const LinkWrench& wrench, Nanoseconds until, const std::string& source) {
+  constexpr std::size_t kMost = 32;
+  std::string refusal = whyNotApplied(wrench);
+  if (!refusal.empty()) return refusal;
   if (wrench.joint >= static_cast<int>(description_.joints.size())) {
     return "the wrench acts upon a link that this arm does not have";
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <csignal>
 
@@ -23,6 +24,20 @@ TEST(AtomicFileTest, TheFileAppearsWithCommitAndNotBefore) {
   }
   EXPECT_EQ(TemporaryFolder::read(path), "{}");
   EXPECT_EQ(folder.entries(), 1U);
+}
+
+TEST(AtomicFileTest, WhatIsNoFileIsNotReplaced) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "pipe";
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  try {
+    AtomicFile(path, /*overwrite=*/true);
+    FAIL() << "a pipe was replaced";
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.what(),
+              path.string() + ": is a device or the like, not a file that can be replaced; choose another name.");
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(path));
 }
 
 TEST(AtomicFileTest, WithoutCommitNothingIsLeft) {

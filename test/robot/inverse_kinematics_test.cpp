@@ -104,6 +104,28 @@ TEST(InverseKinematicsTest, SolvesEveryReachablePoseOfEveryArmWithinLimits) {
   }
 }
 
+TEST(InverseKinematicsTest, RangesFarFromZeroAreSearchedWhole) {
+  SolveOptions options;
+  options.tolerance = kFine;
+  for (const auto& [lower, upper] : {std::pair(3.2, 6.2), std::pair(-6.2, -3.2), std::pair(1.0, 5.0)}) {
+    RobotDescription arm = describeOwnArm("demo_arm");
+    for (ArmJoint& joint : arm.joints) {
+      joint.lower = lower;
+      joint.upper = upper;
+    }
+    const InverseKinematics solver(arm);
+    const RobotModel kdl(arm);
+    std::mt19937_64 generator(12);
+    for (int i = 0; i < 100; ++i) {
+      const Eigen::Isometry3d X_base_tip = kdl.forwardKinematics(randomPosture(arm, generator));
+      Eigen::VectorXd q;
+      const Solution solution = solver.solve(X_base_tip, randomPosture(arm, generator), q, options);
+      EXPECT_TRUE(solution.solved) << lower << " to " << upper << ", pose " << i;
+      EXPECT_EQ(beyondLimits(arm, q), 0.0) << lower << " to " << upper << ", pose " << i;
+    }
+  }
+}
+
 RC_GTEST_PROP(InverseKinematicsProperty, ASeedCloseToASolutionIsNotLeftForAnotherBranch, ()) {
   static const RobotDescription arm = describeOwnArm("demo_arm");
   static const InverseKinematics solver(arm);
@@ -195,7 +217,9 @@ TEST(InverseKinematicsTest, WhatIsNotAPoseIsRefusedAtOnce) {
   mirrored.linear()(2, 2) = -1.0;
   Eigen::Isometry3d nothing = Eigen::Isometry3d::Identity();
   nothing.linear().setZero();
-  for (const Eigen::Isometry3d& target : {not_a_number, stretched, mirrored, nothing}) {
+  Eigen::Isometry3d beyond_computing = Eigen::Isometry3d::Identity();
+  beyond_computing.translation().x() = 1e155;  // its square is none
+  for (const Eigen::Isometry3d& target : {not_a_number, stretched, mirrored, nothing, beyond_computing}) {
     Eigen::VectorXd q;
     const Solution solution = solver.solve(target, seed, q);
     EXPECT_FALSE(solution.solved);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "demo_logger/trajectory/error.h"
+#include "test/robot/own_arms.h"
 
 namespace demo_logger {
 namespace {
@@ -217,6 +218,27 @@ TEST(RobotDescriptionTest, ALoadAtTheTipJoinsTheLastBody) {
   } catch (const ModelError& error) {
     EXPECT_STREQ(error.what(), "the load at tip 'hand' has mass -1 kg, expected a positive one");
   }
+}
+
+TEST(RobotDescriptionTest, ALoadThatNoArmMovesIsRefused) {
+  const RobotDescription arm = describeOwnArm("two_link");
+  const auto messageOf = [&](const BodyInertia& load) -> std::string {
+    try {
+      withLoad(arm, load);
+    } catch (const ModelError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  BodyInertia load;
+  load.mass = 1e20;
+  EXPECT_EQ(messageOf(load), "the load at tip 'tool_tip' has a mass of 1e+20 kg, expected at most 1000 kg");
+  load.mass = 0.5;
+  load.center.x() = 1e9;
+  EXPECT_EQ(
+      messageOf(load),
+      "the load at tip 'tool_tip' reaches 1e+09 m away with moments of inertia up to 0 kg m², expected at most 10 m "
+      "and 100000 kg m²");
 }
 
 TEST(RobotDescriptionTest, KeepsTheHashOfTheVeryTextItRead) {

@@ -36,6 +36,9 @@ struct ArmTick {
   AppliedControl applied;
 };
 
+/// Why a wrench is refused, whatever the arm: not finite, or stronger than any arm stands. Empty if it is not.
+std::string whyNotApplied(const LinkWrench& wrench);
+
 /// An arm on the desk: motors, controller and sensors around Bullet's physics. One call is one control tick: sense,
 /// take in the commands, decide on a torque, hold it until the next tick. The effort it reports is "held" with the
 /// control period (EffortMetadata), or "instant" if it is measured at the link. Deterministic: the same configuration
