@@ -227,6 +227,7 @@ struct TrackScore {
   int violations = 0;
   double microseconds = 0.0;
   double excess = 0.0;  // [mm] out of reach: position error beyond the true distance
+  double behind = 0.0;  // [mm] position error after the hand's return
   double back = 0.0;    // [ms] out of reach: from the hand's return until the position is within 1 mm
 };
 
@@ -246,6 +247,7 @@ TrackScore scoreTracking(const RobotDescription& arm, const TrackingPath& path, 
   Eigen::VectorXd before = path.start, last = path.start;
   TrackScore result;
   double returned = -1.0;
+  bool was_out = false;
   for (std::size_t k = 0; k < path.poses.size(); ++k) {
     const double begin = threadSeconds();
     if (foresight) {
@@ -271,10 +273,15 @@ TrackScore scoreTracking(const RobotDescription& arm, const TrackingPath& path, 
     if (position <= 1.0 && rotation <= 1.0) result.within += 1.0 / static_cast<double>(path.poses.size());
     if (path.name != "out of reach" || k % static_cast<std::size_t>(rate / 100.0) != 0) continue;
     const double distance = 1e3 * reachable.to(path.poses[k].translation());
-    result.excess = std::max(result.excess, position - distance);
-    if (distance > 0.1) returned = -1.0;
-    if (distance <= 0.1 && returned < 0.0) returned = times[k];
-    if (position > 1.0) result.back = 1e3 * (times[k] - std::max(0.0, returned));
+    if (distance > 0.1) {
+      result.excess = std::max(result.excess, position - distance);
+      was_out = true;
+      returned = -1.0;
+    } else if (was_out) {
+      if (returned < 0.0) returned = times[k];
+      result.behind = std::max(result.behind, position);
+      if (position > 1.0) result.back = 1e3 * (times[k] - returned);
+    }
   }
   return result;
 }
@@ -285,8 +292,8 @@ void measureTracking(const std::vector<Subject>& subjects) {
               limits.acceleration);
   std::printf(
       "| arm | path | Hz | foresight | worst mm | worst mrad | steps within 1 mm and 1 mrad %% | limit violations | µs "
-      "a step | beyond true distance mm | back after ms |\n");
-  std::printf("|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "a step | beyond true distance mm | behind after return mm | back after ms |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Subject& subject : subjects) {
     for (const double rate : {100.0, 1000.0}) {
       const TrackingPaths paths(subject.arm, rate, limits);
@@ -294,10 +301,11 @@ void measureTracking(const std::vector<Subject>& subjects) {
         for (const bool foresight : {true, false}) {
           const TrackScore result = scoreTracking(subject.arm, path, rate, foresight, limits);
           const bool out = path.name == "out of reach";
-          std::printf("| %s | %s | %.0f | %s | %.3f | %.3f | %.1f | %d | %.1f | %s | %s |\n", subject.name.c_str(),
+          std::printf("| %s | %s | %.0f | %s | %.3f | %.3f | %.1f | %d | %.1f | %s | %s | %s |\n", subject.name.c_str(),
                       path.name.c_str(), rate, foresight ? "yes" : "no", result.position, result.rotation,
                       100.0 * result.within, result.violations, result.microseconds,
                       out ? std::to_string(static_cast<int>(result.excess + 0.5)).c_str() : "",
+                      out ? std::to_string(static_cast<int>(result.behind + 0.5)).c_str() : "",
                       out ? std::to_string(static_cast<int>(result.back + 0.5)).c_str() : "");
         }
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "demo_logger/robot/inverse_kinematics.h"
 #include "demo_logger/trajectory/error.h"
 #include "pose_error.h"
 #include "posture_plan.h"
@@ -10,10 +11,15 @@
 namespace demo_logger {
 namespace {
 
-constexpr double kInterval = 0.1;   // [s] between knots
-constexpr double kFurthest = 20.0;  // [s] planned ahead
-constexpr double kRenewed = 10.0;   // [s] before the end of a plan that is not the path's
-constexpr double kSlack = 1e-9;     // [s] times are sums of decimal fractions
+constexpr double kInterval = 0.1;        // [s] between knots
+constexpr double kFurthest = 20.0;       // [s] planned ahead
+constexpr double kRenewed = 10.0;        // [s] before the end of a plan that is not the path's
+constexpr double kPatience = 1.0;        // [s] off a path that another branch could follow
+constexpr double kSearchInterval = 0.1;  // [s]
+constexpr double kNearPosition = 0.02;   // [m]
+constexpr double kNear = 0.1;            // [m] and [rad]
+constexpr int kSearch = 500;             // iterations
+constexpr double kSlack = 1e-9;          // [s] times are sums of decimal fractions
 
 }  // namespace
 
@@ -23,6 +29,7 @@ class PathTracker::Implementation {
                  const Eigen::VectorXd& start, const TrackingOptions& options)
       : poses(given_poses),
         times(given_times),
+        solver(robot),
         tracker(robot, options),
         planner(robot, MotionLimits(robot, options.max_velocity, options.max_acceleration)) {
     tracker.reset(start);
@@ -43,8 +50,30 @@ class PathTracker::Implementation {
     const TrackedStep result = tracker.step(poses[row], times[row] - times[row - 1]);
     const bool out = result.status == TrackingStatus::at_limit || result.status == TrackingStatus::unreachable;
     if (lost && !out) plan_again = row + 1;
+    if (!lost && out) next_search = solvable_since = times[row];
     lost = out;
+    if (lost) lookForAnotherBranch(row, result.position_error);
     return result;
+  }
+
+  /// Off the path, though another branch could have followed it for a while: then that is where to go. Not for the sake
+  /// of the orientation alone, since on the way there the position is lost.
+  void lookForAnotherBranch(std::size_t row, double position_error) {
+    if (times[row] < next_search) return;
+    next_search = times[row] + kSearchInterval;
+    if (position_error < kNearPosition || !solveGlobally(row)) {
+      solvable_since = times[row];
+    } else if (times[row] - solvable_since > kPatience) {
+      plan_again = row + 1;
+      lost = false;
+    }
+  }
+
+  /// A posture at the pose of `row`, wherever it lies, into `q`.
+  bool solveGlobally(std::size_t row) {
+    SolveOptions options;
+    options.most_iterations = kSearch;
+    return solver.solve(poses[row], tracker.q(), q, options).solved;
   }
 
   void planFrom(std::size_t row) {
@@ -66,16 +95,22 @@ class PathTracker::Implementation {
       knots.clear();
       return;
     }
-    postures = planner.plan(knots, tracker.q());
+    // From where the arm is, or if that is not on the path, from where it should be: the way there is the tracker's.
+    const TrackedStep here = tracker.stay(poses[row]);
+    const bool on_path = std::max(here.position_error, here.rotation_error) < kNear;
+    if (on_path || !solveGlobally(row)) q = tracker.q();
+    postures = planner.plan(knots, q);
   }
 
   const Poses& poses;
   const std::vector<double>& times;
+  InverseKinematics solver;
   Tracker tracker;
   PosturePlanner planner;
   std::size_t next = 0;
-  std::size_t plan_again = 0;  // row
-  bool lost = false;           // out of reach in the last row
+  std::size_t plan_again = 0;                      // row
+  bool lost = false;                               // out of reach in the last row
+  double next_search = 0.0, solvable_since = 0.0;  // [s] while lost
   std::vector<PosturePlanner::Knot> knots;
   std::vector<JointVector> postures;
   Eigen::VectorXd q, velocity;

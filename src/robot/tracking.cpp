@@ -240,19 +240,20 @@ class Tracker::Implementation {
 
   // The state from step to step.
   JointVector q, velocity;
-  double previous_dt = 0.0;  // [s] 0 before the first step
-  RigidPose last_target;
-  bool has_last_target = false;
-  bool position_first = false;
+  double previous_dt = 0.0;   // [s] 0 before the first step
   double out_of_reach = 0.0;  // weighed error that is left however long the arm may take
+  RigidPose last_target;
   JointVector preferred, preferred_velocity;
-  bool has_preference = false;
   Eigen::VectorXd public_q, public_velocity, q_before;
 
   // Within a step.
   MotionBox box, wide;
   StepWishes wishes;
   JointVector wanted, unhurried, own, other, x;
+
+  bool has_last_target = false;
+  bool has_preference = false;
+  bool position_first = false;
   bool in_transit = false;
 };
 

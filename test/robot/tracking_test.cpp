@@ -171,6 +171,22 @@ TEST(TrackingTest, TheFirstStepsFromRestAreSpeedLimitedAndSaidToBe) {
   EXPECT_STREQ(toString(TrackingStatus::speed_limited), "speed_limited");
 }
 
+TEST(TrackingTest, FromAPostureOffThePathForesightFindsTheWayToIt) {
+  const RobotDescription arm = describeOwnArm("demo_arm");
+  const TrackingPath path = TrackingPaths(arm, 100.0, {kVelocity, kAcceleration}).singular();
+  const Eigen::VectorXd upright = Eigen::VectorXd::Zero(7);  // stretched: no descent leads away from it
+  std::vector<double> times;
+  for (std::size_t k = 0; k < path.poses.size(); ++k) times.push_back(0.01 * static_cast<double>(k));
+  PathTracker tracker(arm, path.poses, times, upright, measuredOptions());
+  LimitsWatch watch(arm, upright, 0.01);
+  TrackedStep step;
+  for (std::size_t k = 0; k < 300; ++k) {
+    step = tracker.step();
+    watch.see(tracker.q());
+  }
+  EXPECT_EQ(step.status, TrackingStatus::tracked) << "3 s are enough for any joint to go anywhere";
+}
+
 TEST(TrackingTest, OutOfReachTheArmStretchesTowardsTheHand) {
   const RobotDescription arm = describeOwnArm("two_link");
   Tracker tracker(arm, measuredOptions());
