@@ -82,7 +82,8 @@ TEST(JointStateFaultsTest, WhatIsSentIsTheTruthAndWhatIsNotIsCounted) {
       }
       const Nanoseconds made = kNanosecondsPerSecond + k * kMillisecond;
       if (message.stamp == 0) {
-        const bool first_of_two = i + 1 < sent.size() && sent[i + 1].message.reading.q == message.reading.q;
+        const bool first_of_two = i + 1 < sent.size() && sent[i + 1].message.names == message.names &&
+                                  sent[i + 1].message.reading.q == message.reading.q;
         if (!first_of_two) ++zero_stamped;
       } else {
         ASSERT_EQ(message.stamp, made);
