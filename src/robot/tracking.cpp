@@ -26,7 +26,7 @@ constexpr double kCalming = 0.5;    // per weighed error that no posture removes
 constexpr double kRotationAfter = 0.01;  // weight of the rotation where not both can be had
 constexpr double kHorizon = 0.1;         // [s] ahead of which the reachable is judged …
 constexpr double kFurthest = 0.5;        // [rad or m] … within this
-constexpr double kCatchUp = 0.7;         // share of the acceleration planned for catching up; the target needs some too
+constexpr double kCatchUp = 0.9;         // share of the acceleration planned for catching up; the target needs some too
 constexpr double kReached = 0.3;         // share of the tolerance
 constexpr double kFastest = 1e3;         // [rad/s or m/s] of a joint without a limit
 constexpr double kLongestPart = 0.005;   // [s]
@@ -68,6 +68,7 @@ class Tracker::Implementation {
     velocity.setZero(size());
     previous_dt = 0.0;
     has_last_target = false;
+    has_last_goal = false;
     has_preference = false;
     position_first = false;
     out_of_reach = 0.0;
@@ -165,6 +166,12 @@ class Tracker::Implementation {
     in_transit = false;
     const Vector6 error = solver.errorAt(target, q + unhurried);
     const bool reachable = largerError(error) <= kReached * options.tolerance;
+    // Out of reach it is not the target's motion that the arm follows, but that of the nearest it can do.
+    if (has_last_goal && error.head<3>().norm() > options.tolerance) {
+      own = (q + unhurried - last_goal).cwiseMax(-dt * fastest).cwiseMin(dt * fastest);
+    }
+    last_goal = q + unhurried;
+    has_last_goal = true;
     position_first = !reachable;
     out_of_reach = reachable ? 0.0 : solver.weighed(error, kRotationAfter);
     return reachable;
@@ -243,6 +250,7 @@ class Tracker::Implementation {
   double previous_dt = 0.0;   // [s] 0 before the first step
   double out_of_reach = 0.0;  // weighed error that is left however long the arm may take
   RigidPose last_target;
+  JointVector last_goal;  // where an arm in no hurry would have gone
   JointVector preferred, preferred_velocity;
   Eigen::VectorXd public_q, public_velocity, q_before;
 
@@ -252,6 +260,7 @@ class Tracker::Implementation {
   JointVector wanted, unhurried, own, other, x;
 
   bool has_last_target = false;
+  bool has_last_goal = false;
   bool has_preference = false;
   bool position_first = false;
   bool in_transit = false;
