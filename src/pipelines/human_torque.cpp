@@ -33,7 +33,7 @@ struct Recording {
 };
 
 EffortMetadata meaningOf(const Demonstration& demonstration, const HumanTorqueOptions& options) {
-  const EffortMetadata meaning = options.effort.value_or(demonstration.metadata.effort);
+  EffortMetadata meaning = options.effort.value_or(demonstration.metadata.effort);
   if (meaning.side != "motor" && meaning.side != "link") {
     throw ConfigurationError("effort: side is \"" + meaning.side + "\", expected motor or link.");
   }

@@ -65,7 +65,9 @@ class TimeConstantSearch {
     const double longest = std::max(2.0 * (time_.back() - time_.front()), 2.0 * shortest);
     double best = shortest;
     double most = -std::numeric_limits<double>::infinity();
-    for (double T = shortest; T <= longest; T *= kCoarseStep) {
+    const int last = static_cast<int>(std::log(longest / shortest) / std::log(kCoarseStep));
+    for (int i = 0; i <= last; ++i) {
+      const double T = shortest * std::pow(kCoarseStep, i);
       const double likelihood = logLikelihood(T, /*of_blocks=*/true);
       if (likelihood > most) {
         most = likelihood;
