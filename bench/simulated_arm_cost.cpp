@@ -11,6 +11,7 @@
 
 #include "demo_logger/robot/robot_model.h"
 #include "demo_logger/simulation/simulated_arm.h"
+#include "test/simulation/energy.h"
 
 namespace demo_logger {
 namespace {
@@ -78,34 +79,6 @@ Cost measureArm(const RobotDescription& description, const SimulatedArmConfigura
     arm.tick(now, commands);
   });
 }
-
-/// Kinetic and potential energy [J].
-class Energy {
- public:
-  explicit Energy(const RobotDescription& arm) : arm_(arm), model_(arm) {
-    for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-      RobotDescription part = arm;
-      part.joints.resize(i + 1);
-      part.X_lastlink_tip = Eigen::Isometry3d::Identity();
-      links_.emplace_back(part);
-    }
-  }
-
-  double operator()(const ArmState& state) const {
-    double energy = 0.5 * state.dq.dot(model_.massMatrix(state.q) * state.dq);
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      const Eigen::VectorXd q = state.q.head(static_cast<Eigen::Index>(i) + 1);
-      const BodyInertia& body = arm_.joints[i].body;
-      energy -= body.mass * arm_.gravity.dot(links_[i].forwardKinematics(q) * body.center);
-    }
-    return energy;
-  }
-
- private:
-  RobotDescription arm_;
-  RobotModel model_;
-  std::vector<RobotModel> links_;
-};
 
 /// Largest |E − E₀| [J] in 5 s of 1 kHz, the worst of several falls from rest; infinite if one diverges.
 double energyDrift(const RobotDescription& arm, Integrator integrator, int substeps) {

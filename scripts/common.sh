@@ -75,6 +75,14 @@ buildTree() {
   fi
 }
 
+# The setup file reads variables that need not be set.
+useDevelSpace() {
+  set +u
+  # shellcheck disable=SC1091
+  source "$project/devel/setup.bash"
+  set -u
+}
+
 freePort() {
   python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])'
 }

@@ -32,11 +32,7 @@ done
 "$project/scripts/install_dependencies.sh" build run
 defaultJobs
 buildTree "$project/build" demo_logger_programs -DCMAKE_BUILD_TYPE=Release
-set +u
-# shellcheck disable=SC1091
-source "$project/devel/setup.bash"
-set -u
-
+useDevelSpace
 openRunFolder
 trap closeRunFolder EXIT
 trap 'exit 130' INT TERM

@@ -25,11 +25,7 @@ picture=${1:-$project/doc/rviz.png}
 missing=$("$project/scripts/install_dependencies.sh" --missing run picture | paste -sd' ')
 [ -z "$missing" ] || fail "not installed: $missing; run \"sudo scripts/install_dependencies.sh run picture\""
 [ -f "$project/devel/setup.bash" ] || fail "nothing is built yet; run scripts/demo.sh or build as in CONTRIBUTING.md"
-set +u
-# shellcheck disable=SC1091
-source "$project/devel/setup.bash"
-set -u
-
+useDevelSpace
 openRunFolder
 trap closeRunFolder EXIT
 trap 'exit 130' INT TERM

@@ -21,6 +21,7 @@ class RowPacing {
 
   /// The stamps of an episode's rows, increasing. Returns the length of the gap that ends at `stamp`, if one does.
   std::optional<Nanoseconds> add(Nanoseconds stamp);
+  std::optional<Nanoseconds> last() const { return last_; }  // stamp
   std::optional<Nanoseconds> usualInterval() const { return usual_; }
   void clear() { *this = RowPacing(max_gap_); }
 

@@ -109,7 +109,6 @@ void Sequencer::resetEpisode() {
   for (RecordedStream& stream : streams_) stream.beginEpisode();
   opened_ = false;
   open_at_.reset();
-  last_stamp_.reset();
   pacing_.clear();
 }
 
@@ -229,7 +228,7 @@ void Sequencer::admit(JointRow row, RowListener& listener) {
       ledger_.count(Counter::late_rows);
       ledger_.report(FaultKind::late_row, kJointStatesSubject, receipt, [this, stamp] {
         return "a joint state came when later ones had become rows, " +
-               print(toSeconds(last_stamp_.value_or(stamp) - stamp), 3) +
+               print(toSeconds(pacing_.last().value_or(stamp) - stamp), 3) +
                " s behind them; it was dropped. A longer max_wait leaves more time to put them into order";
       });
       return;
@@ -296,7 +295,6 @@ void Sequencer::release(RowListener& listener, bool open_now) {
                "; were messages lost, or did the robot pause?";
       });
     }
-    last_stamp_ = stamp;
     ledger_.count(Counter::rows);
     listener.row(row.row);
   }

@@ -107,8 +107,7 @@ class Sequencer {
   bool started_ = false;
   bool opened_ = false;
   std::optional<Nanoseconds> open_at_;  // at the latest; set by the first row
-  std::optional<Nanoseconds> last_stamp_;
-  std::size_t width_ = 0;  // of a row
+  std::size_t width_ = 0;               // of a row
   std::map<std::string, std::string> original_names_;
 };
 

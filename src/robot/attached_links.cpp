@@ -10,12 +10,6 @@
 namespace demo_logger {
 namespace {
 
-Eigen::Isometry3d toEigen(const urdf::Pose& pose) {
-  const urdf::Rotation& r = pose.rotation;
-  return Eigen::Translation3d(pose.position.x, pose.position.y, pose.position.z) *
-         Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized();
-}
-
 void readShapes(const urdf::Link& link, AttachedLink& attached) {
   for (const auto& collision : link.collision_array) {
     CollisionShape shape;

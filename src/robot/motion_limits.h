@@ -27,12 +27,16 @@ class MotionLimits {
   const JointVector& lower() const { return lower_; }
   const JointVector& upper() const { return upper_; }
   const JointVector& velocity() const { return velocity_; }
+  /// The same with a number for joints without a limit, to compute with.
+  JointVector finiteVelocity() const { return velocity_.cwiseMin(kFastest); }
   double acceleration() const { return acceleration_; }
 
   /// Never empty if the steps before kept to theirs; the lengths of steps may differ as they like.
   void box(const JointVector& q, const JointVector& velocity, double previous_dt, double dt, MotionBox& box) const;
 
  private:
+  static constexpr double kFastest = 1e3;  // [rad/s or m/s] of a joint without a limit
+
   JointVector lower_, upper_;
   JointVector velocity_;
   double acceleration_;

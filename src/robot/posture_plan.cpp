@@ -18,7 +18,6 @@ constexpr double kReached = 1e-5;            // [m] and [rad]
 constexpr double kGood = 1e-4;               // residual beyond which a posture counts as off the path
 constexpr int kIterations = 12;
 constexpr int kSweeps = 15;
-constexpr double kFastest = 1e3;  // [rad/s or m/s] of a joint without a limit
 
 // Costs. Those of a posture and of speed are per second; the others are large, for what should not be.
 constexpr double kOffCentre = 0.1;
@@ -37,7 +36,7 @@ PosturePlanner::PosturePlanner(const RobotDescription& robot, const MotionLimits
       ranges_(robot),
       limits_(limits),
       descent_(kinematics_, ranges_),
-      velocity_(limits.velocity().cwiseMin(kFastest)) {}
+      velocity_(limits.finiteVelocity()) {}
 
 std::vector<JointVector> PosturePlanner::plan(const std::vector<Knot>& knots, const JointVector& start) const {
   std::vector<std::vector<Candidate>> layers(1);

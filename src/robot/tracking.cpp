@@ -28,7 +28,6 @@ constexpr double kHorizon = 0.1;         // [s] ahead of which the reachable is 
 constexpr double kFurthest = 0.5;        // [rad or m] … within this
 constexpr double kCatchUp = 0.9;         // share of the acceleration planned for catching up; the target needs some too
 constexpr double kReached = 0.3;         // share of the tolerance
-constexpr double kFastest = 1e3;         // [rad/s or m/s] of a joint without a limit
 constexpr double kLongestPart = 0.005;   // [s]
 constexpr int kMostParts = 4;
 constexpr int kApproaches = 4;  // Gauss-Newton iterations, at most
@@ -148,7 +147,7 @@ class Tracker::Implementation {
   /// target's own motion. False if it does not reach the target.
   bool solveUnhurried(const RigidPose& target, double dt) {
     const Eigen::Index n = size();
-    const JointVector fastest = limits.velocity().cwiseMin(kFastest);
+    const JointVector fastest = limits.finiteVelocity();
     const JointVector furthest = (std::max(kHorizon, 3.0 * dt) * fastest).cwiseMin(kFurthest);
     wide.lower = (limits.lower() - q).cwiseMax(-furthest);
     wide.upper = (limits.upper() - q).cwiseMin(furthest);

@@ -11,13 +11,13 @@ namespace {
 
 Eigen::Vector3d toEigen(const urdf::Vector3& vector) { return {vector.x, vector.y, vector.z}; }
 
+}  // namespace
+
 Eigen::Isometry3d toEigen(const urdf::Pose& pose) {
   Eigen::Quaterniond rotation;
   pose.rotation.getQuaternion(rotation.x(), rotation.y(), rotation.z(), rotation.w());
   return Eigen::Translation3d(toEigen(pose.position)) * rotation.normalized();
 }
-
-}  // namespace
 
 bool isMoving(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||

@@ -12,6 +12,9 @@ namespace demo_logger {
 
 bool isMoving(const urdf::Joint& joint);  // revolute, continuous or prismatic
 
+/// A rotation that is not normalised is made so.
+Eigen::Isometry3d toEigen(const urdf::Pose& pose);
+
 /// Pose of the child link in the parent link with the joint at `position` [rad or m].
 Eigen::Isometry3d childInParent(const urdf::Joint& joint, double position);
 

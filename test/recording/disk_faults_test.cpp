@@ -3,15 +3,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <optional>
 #include <random>
-#include <thread>
 
 #include "demo_logger/formats/sidecar.h"
 #include "demo_logger/recording/episode_writer.h"
 #include "demo_logger/trajectory/error.h"
+#include "test/recording/eventually.h"
 #include "test/recording/faulty_file_system.h"
 #include "test/recording/recording_directory.h"
 
@@ -31,13 +30,6 @@ class DiskFaultsTest : public testing::Test {
   std::unique_ptr<EpisodeWriter> makeWriter(const EpisodeWriterOptions& options) {
     return std::make_unique<EpisodeWriter>(EpisodeReservation(directory_.path(), &disk_), jointColumns(), Metadata{},
                                            options);
-  }
-  template <typename Condition>
-  static bool eventually(Condition condition) {
-    for (int attempt = 0; attempt < 60000 && !condition(); ++attempt) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return condition();
   }
   Metadata savedMetadata() const { return readSidecar(directory_ / "demo_000001.json").metadata; }
 

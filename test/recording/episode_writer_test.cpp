@@ -5,10 +5,10 @@
 
 #include <limits>
 #include <random>
-#include <thread>
 
 #include "demo_logger/formats/sidecar.h"
 #include "demo_logger/trajectory/error.h"
+#include "test/recording/eventually.h"
 #include "test/recording/recording_directory.h"
 
 namespace demo_logger {
@@ -135,15 +135,6 @@ TEST(EpisodeWriterTest, FinalFilesAreReadableByOwnerAndGroupOnly) {
     EXPECT_EQ(status.st_mode & 07777, 0640U) << name;
     EXPECT_LE(status.st_blocks * 512, 4096) << name << " keeps room that nothing will fill";
   }
-}
-
-/// Waits for something that must come, however slow the machine.
-template <typename Condition>
-bool eventually(Condition condition) {
-  for (int attempt = 0; attempt < 6000 && !condition(); ++attempt) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return condition();
 }
 
 TEST(EpisodeWriterTest, WhileItIsOpenAReaderSeesWholeRowsAndAWholeSidecarOnly) {

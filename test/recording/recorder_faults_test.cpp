@@ -1,23 +1,13 @@
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
-#include <chrono>
-#include <thread>
-
 #include "demo_logger/recording/recorder.h"
 #include "demo_logger/trajectory/error.h"
+#include "test/recording/eventually.h"
 #include "test/recording/recorder_fixture.h"
 
 namespace demo_logger {
 namespace {
-
-template <typename Condition>
-bool eventually(Condition condition) {
-  for (int attempt = 0; attempt < 60000 && !condition(); ++attempt) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return condition();
-}
 
 TEST_F(RecorderTest, NoEpisodeBeginsOnADiskWithTooLittleRoom) {
   RecorderConfiguration demanding = configuration();

@@ -4,7 +4,6 @@
 #include <rapidcheck/gtest.h>
 
 #include <Eigen/Dense>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -14,6 +13,7 @@
 #include "demo_logger/robot/robot_model.h"
 #include "demo_logger/trajectory/error.h"
 #include "test/robot/counted_allocations.h"
+#include "test/robot/error_of.h"
 #include "test/robot/pose_by_hand.h"
 #include "test/robot/subjects.h"
 #include "test/robot/two_link_by_hand.h"
@@ -242,15 +242,6 @@ TEST(InverseKinematicsTest, ASeedOutOfLimitsStartsAtThem) {
   EXPECT_TRUE(solver.solve(X_base_tip, far, q_far).solved);
   EXPECT_TRUE(solver.solve(X_base_tip, at_limits, q_limits).solved);
   EXPECT_EQ(q_far, q_limits);
-}
-
-std::string errorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(InverseKinematicsTest, SeedsOfTheWrongSizeAndSenselessOptionsAreSaidInASentence) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "demo_logger/robot/robot_model.h"
-#include "test/robot/allocations.h"
+#include "test/robot/counted_allocations.h"
 #include "test/robot/own_arms.h"
 
 namespace demo_logger {
@@ -14,11 +14,11 @@ namespace {
 
 TEST(RobotModelMemoryTest, TheCounterCounts) {
   if (!kAllocationsAreCounted) GTEST_SKIP() << "the sanitizer has an allocator of its own";
-  const std::size_t before = allocations();
+  const std::size_t before = allocation_count;
   const Eigen::VectorXd by_eigen = Eigen::VectorXd::Zero(7);
-  EXPECT_EQ(allocations(), before + 1);
+  EXPECT_EQ(allocation_count, before + 1);
   const std::vector<double> by_new(7);
-  EXPECT_EQ(allocations(), before + 2);
+  EXPECT_EQ(allocation_count, before + 2);
 }
 
 TEST(RobotModelMemoryTest, NothingIsAllocatedAfterConstruction) {
@@ -33,7 +33,7 @@ TEST(RobotModelMemoryTest, NothingIsAllocatedAfterConstruction) {
   Eigen::MatrixXd mass(7, 7), jacobian(6, 7);
   Eigen::Isometry3d pose;
 
-  const std::size_t before = allocations();
+  const std::size_t before = allocation_count;
   for (int call = 0; call < 10; ++call) {
     model.forwardKinematics(q, pose);
     model.jacobian(q, jacobian);
@@ -48,7 +48,7 @@ TEST(RobotModelMemoryTest, NothingIsAllocatedAfterConstruction) {
     model.motorTorque(q, bad, q, torque);
     model.jacobian(bad, jacobian);
   }
-  EXPECT_EQ(allocations(), before);
+  EXPECT_EQ(allocation_count, before);
 }
 
 }  // namespace

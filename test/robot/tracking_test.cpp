@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <functional>
 #include <limits>
 #include <memory>
 #include <random>
@@ -14,6 +13,7 @@
 #include "demo_logger/robot/robot_model.h"
 #include "demo_logger/trajectory/error.h"
 #include "test/robot/counted_allocations.h"
+#include "test/robot/error_of.h"
 #include "test/robot/pose_by_hand.h"
 #include "test/robot/subjects.h"
 #include "test/robot/tracking_paths.h"
@@ -288,15 +288,6 @@ TEST(TrackingTest, NoStepAllocatesAndEveryRunGivesTheSameBits) {
       }
     }
   }
-}
-
-std::string errorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(TrackingTest, SenselessLimitsStartsAndStepsAreSaidInASentence) {
