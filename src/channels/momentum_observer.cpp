@@ -10,7 +10,7 @@ namespace demo_logger {
 
 MomentumObserver::MomentumObserver(Eigen::Index joints, double gain)
     : gain_(gain),
-      integral_(Eigen::VectorXd::Zero(joints)),
+      last_momentum_(Eigen::VectorXd::Zero(joints)),
       last_u_(Eigen::VectorXd::Zero(joints)),
       residual_(Eigen::VectorXd::Zero(joints)) {
   if (!(gain > 0.0) || !std::isfinite(gain)) {
@@ -29,14 +29,14 @@ bool MomentumObserver::update(double dt, const Eigen::VectorXd& momentum, const 
   if (!started_) {
     started_ = true;
     running_ = 0.0;
-    integral_ = momentum;
+    last_momentum_ = momentum;
     last_u_ = u;
     residual_.setZero();
     return false;
   }
-  integral_ += dt * (motor_torque + 0.5 * (last_u_ + u));
-  residual_ = gain_ / (1.0 + gain_ * dt) * (momentum - integral_);
-  integral_ += dt * residual_;
+  const double taken = -std::expm1(-gain_ * dt);
+  residual_ += taken * ((momentum - last_momentum_) / dt - motor_torque - 0.5 * (last_u_ + u) - residual_);
+  last_momentum_ = momentum;
   last_u_ = u;
   running_ += dt;
   if (running_ < kSettlingTimes / gain_) return false;

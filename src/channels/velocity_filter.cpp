@@ -1,62 +1,42 @@
 #include "demo_logger/channels/velocity_filter.h"
 
-#include <cmath>
-#include <limits>
-
-#include "demo_logger/trajectory/error.h"
-#include "demo_logger/trajectory/print.h"
-
 namespace demo_logger {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kTurn = 2.0 * 3.14159265358979323846;
 
 }  // namespace
 
 VelocityFilter::VelocityFilter(Eigen::Index joints, double cutoff)
-    : omega_(2.0 * kPi * cutoff),
-      last_(Eigen::VectorXd::Zero(joints)),
-      velocity_(Eigen::VectorXd::Zero(joints)),
-      rate_(Eigen::VectorXd::Zero(joints)) {
-  if (!(cutoff > 0.0) || !std::isfinite(cutoff)) {
-    throw ConfigurationError("velocity filter: the cut-off is " + print(cutoff) + " Hz, expected a positive number.");
-  }
-}
+    : filter_(joints, cutoff), last_(Eigen::VectorXd::Zero(joints)), quotient_(Eigen::VectorXd::Zero(joints)) {}
 
-void VelocityFilter::restart() {
-  started_ = false;
-  velocity_.setZero();
-  rate_.setZero();
-}
+void VelocityFilter::restart() { has_position_ = has_velocity_ = false; }
 
-double VelocityFilter::delay() const { return std::sqrt(2.0) / omega_; }
+double VelocityFilter::longestInterval() const { return kTurn / (kFewestSamplesPerPeriod * filter_.omega()); }
 
-bool VelocityFilter::update(double dt, const Eigen::VectorXd& position, Eigen::VectorXd& velocity) {
-  const double longest = 2.0 * kPi / (kFewestSamplesPerPeriod * omega_);
-  if (!position.allFinite() || (started_ && !(dt > 0.0 && dt <= longest))) {
+bool VelocityFilter::update(double dt, const Eigen::VectorXd& position) {
+  if (!position.allFinite()) {
     restart();
-    velocity.setConstant(position.size(), std::numeric_limits<double>::quiet_NaN());
     return false;
   }
-  if (started_) {
-    // The distance to the new input decays as e^(−a t) (cos a t + …) with a = ω/√2, the filter's both poles' distance
-    // from either axis.
-    const double a = omega_ / std::sqrt(2.0);
-    const double decay = std::exp(-a * dt);
-    const double cosine = decay * std::cos(a * dt);
-    const double sine = decay * std::sin(a * dt);
-    for (Eigen::Index i = 0; i < position.size(); ++i) {
-      const double input = (position[i] - last_[i]) / dt;
-      const double distance = velocity_[i] - input;
-      const double rate = rate_[i];
-      velocity_[i] = input + distance * (cosine + sine) + rate * sine / a;
-      rate_[i] = rate * (cosine - sine) - 2.0 * a * distance * sine;
+  const bool follows = has_position_ && dt > 0.0 && dt <= longestInterval();
+  if (follows) {
+    quotient_ = (position - last_) / dt;
+    if (has_velocity_) {
+      filter_.advance(dt, quotient_);
+    } else {
+      filter_.start(quotient_);
     }
   }
-  started_ = true;
+  has_position_ = true;
+  has_velocity_ = follows;
   last_ = position;
-  velocity = velocity_;
-  return true;
+  return follows;
+}
+
+void VelocityFilter::position(Eigen::VectorXd& result) const {
+  const double omega = filter_.omega();
+  result = last_ - filter_.delay() * filter_.value() - filter_.rate() / (omega * omega);
 }
 
 }  // namespace demo_logger

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "demo_logger/pipelines/human_torque_columns.h"
 #include "demo_logger/pipelines/tool_pose.h"
 #include "src/ros/message_conversion.h"
 #include "src/ros/teleop_map_parameter.h"
@@ -20,7 +21,20 @@ std::vector<std::unique_ptr<DerivedColumns>> makeDerivedColumns(const DemoLogger
   if (parameters.robot) {
     derived.push_back(std::make_unique<ToolPose>(*parameters.robot));
   }
+  if (parameters.human_torque) {
+    derived.push_back(std::make_unique<HumanTorqueColumns>(*parameters.robot, *parameters.human_torque));
+  }
+  if (parameters.wrench) {
+    derived.push_back(
+        std::make_unique<WrenchTorqueColumns>(parameters.wrench->arm_to_sensor, parameters.wrench->stream));
+  }
   return derived;
+}
+
+std::optional<HumanTorquePublisher> makeHumanTorquePublisher(const ros::NodeHandle& private_node,
+                                                             const DemoLoggerParameters& parameters) {
+  if (!parameters.human_torque) return std::nullopt;
+  return HumanTorquePublisher(private_node, *parameters.robot, *parameters.human_torque);
 }
 
 std::string stateName(RecorderState state) {
@@ -74,7 +88,10 @@ DemoLoggerNode::DemoLoggerNode(const ros::NodeHandle& node, const ros::NodeHandl
                                const DemoLoggerParameters& parameters)
     : node_(node),
       buttons_(parameters.buttons),
-      recorder_(node, parameters.recorder, makeDerivedColumns(parameters)),
+      human_torque_(makeHumanTorquePublisher(private_node, parameters)),
+      recorder_(node, parameters.recorder, makeDerivedColumns(parameters),
+                human_torque_ ? [this](const JointStateSample& sample) { human_torque_->onJointState(sample); }
+                              : LiveRecorder::JointStateListener()),
       diagnostics_(node, private_node, recorder_, parameters.recorder.synchroniser.correct_clock_offset) {
   ros::NodeHandle names(private_node);
   status_publisher_ = names.advertise<Status>("status", 10, /*latch=*/true);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "src/nodes/demo_logger_parameters.h"
+#include "src/nodes/human_torque_publisher.h"
 #include "src/nodes/live_recorder.h"
 #include "src/nodes/recording_diagnostics.h"
 
@@ -28,6 +29,7 @@ namespace demo_logger {
 ///             ~streams       any supported type, topics as configured
 ///             joy            sensor_msgs/Joy, if `buttons` are given
 ///   out       ~status        demo_logger/Status, latched
+///             ~human_torque  sensor_msgs/JointState, if `human_torque` is asked for
 ///             /diagnostics   diagnostic_msgs/DiagnosticArray, each second
 ///   services  ~start ~stop ~discard ~label
 ///   reads     teleop_map     the map in force, written by the teleoperation node; goes into the sidecar
@@ -61,7 +63,8 @@ class DemoLoggerNode {
 
   ros::NodeHandle node_;
   const Buttons buttons_;
-  std::vector<int> pressed_;  // the buttons of the last joy message
+  std::vector<int> pressed_;                          // the buttons of the last joy message
+  std::optional<HumanTorquePublisher> human_torque_;  // of the recorder's thread
   LiveRecorder recorder_;
   RecordingDiagnostics diagnostics_;
   std::string teleop_map_problem_;

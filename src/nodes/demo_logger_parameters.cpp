@@ -100,31 +100,100 @@ Buttons parseButtons(Parameters parameters) {
   return buttons;
 }
 
-std::optional<RobotDescription> parseRobot(Parameters& parameters, const std::string& robot_description) {
+/// What `human_torque` says, before the robot is known: `true`, or a group that says more.
+struct HumanTorqueRequest {
+  std::optional<HumanTorqueObserverConfiguration> observer;
+  std::string wrench;       // name of a stream
+  std::string wrench_link;  // empty: the tip
+
+  bool any() const { return observer || !wrench.empty(); }
+};
+
+HumanTorqueRequest parseHumanTorque(Parameters& parameters, const EffortMetadata& effort) {
+  HumanTorqueRequest request;
+  const std::optional<XmlRpc::XmlRpcValue> given = parameters.raw("human_torque");
+  if (!given) return request;
+  HumanTorqueObserverConfiguration observer;
+  observer.effort = effort;
+  bool observes = true;
+  if (given->getType() == XmlRpc::XmlRpcValue::TypeStruct) {
+    Parameters group = parameters.group("human_torque");
+    observes = group.flag("observe", true);
+    observer.gain = group.number("gain", observer.gain, {0.1, 10000.0, "1/s"});
+    observer.cutoff = group.number("cutoff", observer.cutoff, {0.1, 10000.0, "Hz"});
+    observer.gravity_compensated = group.flag("gravity_compensated", observer.gravity_compensated);
+    request.wrench = group.text("wrench", "");
+    request.wrench_link = group.text("wrench_link", "");
+    group.rejectUnknown();
+  } else {
+    observes = parameters.flag("human_torque", false);
+  }
+  if (observes) request.observer = observer;
+  return request;
+}
+
+std::optional<RobotDescription> parseRobot(Parameters& parameters, const std::string& robot_description,
+                                           const HumanTorqueRequest& human_torque) {
   DescriptionOptions options;
   options.base = parameters.text("base", "");
   options.tip = parameters.text("tip", "");
-  if (options.base.empty() && options.tip.empty()) {
+  if (options.base.empty() && options.tip.empty() && !human_torque.any()) {
     return std::nullopt;
   }
   if (robot_description.empty()) {
-    throw ConfigurationError(parameters.fullName(options.tip.empty() ? "base" : "tip") +
+    const char* asks = human_torque.any() ? "human_torque" : options.tip.empty() ? "base" : "tip";
+    throw ConfigurationError(parameters.fullName(asks) +
                              " is given but robot_description is not set, here or in a namespace above; expected the "
                              "URDF of the arm there, or neither.");
   }
   return describeRobot(robot_description, options);
 }
 
+/// `wrench` has its columns from the beginning, published or not.
+RecordedWrench findWrench(const Parameters& parameters, const HumanTorqueRequest& request,
+                          const std::string& robot_description, const RobotDescription& robot,
+                          std::vector<StreamConfiguration>& streams) {
+  const auto stream = std::find_if(streams.begin(), streams.end(),
+                                   [&](const StreamConfiguration& one) { return one.name == request.wrench; });
+  if (stream == streams.end()) {
+    throw ConfigurationError(parameters.fullName("human_torque/wrench") + " is \"" + request.wrench +
+                             "\", which is no stream; expected the name of one of " + parameters.fullName("streams") +
+                             ", of geometry_msgs/WrenchStamped.");
+  }
+  stream->type = StreamType::wrench;
+  DescriptionOptions to_sensor;
+  to_sensor.base = robot.base;
+  to_sensor.tip = request.wrench_link.empty() ? robot.tip : request.wrench_link;
+  try {
+    return {request.wrench, describeRobot(robot_description, to_sensor)};
+  } catch (const ModelError& error) {
+    throw ConfigurationError(parameters.fullName("human_torque/wrench_link") + ": " + error.what());
+  }
+}
+
 /// What the sidecar keeps of the configuration, so that a recording can be explained later.
-std::map<std::string, ParameterValue> describeParameters(const RecorderConfiguration& configuration) {
+std::map<std::string, ParameterValue> describeParameters(const DemoLoggerParameters& parameters) {
+  const RecorderConfiguration& configuration = parameters.recorder;
   const SynchroniserConfiguration& synchroniser = configuration.synchroniser;
-  return {{"max_wait", synchroniser.max_wait},
-          {"max_gap", synchroniser.max_gap},
-          {"wait_for_streams", synchroniser.wait_for_streams},
-          {"merge_joint_states", synchroniser.merge_joint_states},
-          {"correct_clock_offset", synchroniser.correct_clock_offset},
-          {"autostart", configuration.autostart},
-          {"joints", synchroniser.joints}};
+  std::map<std::string, ParameterValue> described = {{"max_wait", synchroniser.max_wait},
+                                                     {"max_gap", synchroniser.max_gap},
+                                                     {"wait_for_streams", synchroniser.wait_for_streams},
+                                                     {"merge_joint_states", synchroniser.merge_joint_states},
+                                                     {"correct_clock_offset", synchroniser.correct_clock_offset},
+                                                     {"autostart", configuration.autostart},
+                                                     {"joints", synchroniser.joints}};
+  if (parameters.human_torque) {
+    const HumanTorqueObserver observer(*parameters.robot, *parameters.human_torque);
+    described["human_torque/gain"] = parameters.human_torque->gain;
+    described["human_torque/cutoff"] = parameters.human_torque->cutoff;
+    described["human_torque/gravity_compensated"] = parameters.human_torque->gravity_compensated;
+    described["human_torque/delay"] = observer.delay();
+  }
+  if (parameters.wrench) {
+    described["human_torque/wrench"] = parameters.wrench->stream;
+    described["human_torque/wrench_link"] = parameters.wrench->arm_to_sensor.tip;
+  }
+  return described;
 }
 
 void takeTypesFromMaster(const ros::NodeHandle& node, std::vector<StreamConfiguration>& streams) {
@@ -175,19 +244,25 @@ DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std
   synchroniser.streams = parseStreams(parameters);
 
   parameters.raw("robot_description");  // read by the usual search, which begins here
-  result.robot = parseRobot(parameters, robot_description);
+  const HumanTorqueRequest human_torque = parseHumanTorque(parameters, metadata.effort);
+  result.robot = parseRobot(parameters, robot_description, human_torque);
   synchroniser.joints = parameters.texts("joints", {});
   if (result.robot) {
     recordRobot(*result.robot, recorder);
   }
+  result.human_torque = human_torque.observer;
+  if (!human_torque.wrench.empty()) {
+    result.wrench = findWrench(parameters, human_torque, robot_description, *result.robot, synchroniser.streams);
+  }
   result.buttons = parseButtons(parameters.group("buttons"));
   parameters.rejectUnknown();
-  try {
+  try {  // their sentences begin with the field, which is the parameter's name
     validate(synchroniser);
-  } catch (const ConfigurationError& error) {  // its sentence begins with the field, which is the parameter's name
+    if (result.human_torque) validate(result.human_torque->effort);
+  } catch (const ConfigurationError& error) {
     throw ConfigurationError(parameters.fullName(error.what()));
   }
-  metadata.parameters = describeParameters(recorder);
+  metadata.parameters = describeParameters(result);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "demo_logger/pipelines/human_torque_observer.h"
 #include "demo_logger/recording/recorder.h"
 #include "demo_logger/robot/robot_description.h"
 #include "src/ros/parameters.h"
@@ -23,11 +24,19 @@ struct Buttons {
   bool any() const { return start >= 0 || stop >= 0 || success >= 0 || failure >= 0 || discard >= 0; }
 };
 
+/// A recorded stream of wrenches upon the arm, at a link of it.
+struct RecordedWrench {
+  std::string stream;
+  RobotDescription arm_to_sensor;  // ends at the link
+};
+
 /// All that demo_logger_node is told from outside. config/record.yaml explains each of them.
 struct DemoLoggerParameters {
   RecorderConfiguration recorder;
   Buttons buttons;
-  std::optional<RobotDescription> robot;  // for the tool pose, where `base` or `tip` is given
+  std::optional<RobotDescription> robot;  // for the tool pose, where `base` or `tip` is given, and for human_torque
+  std::optional<HumanTorqueObserverConfiguration> human_torque;
+  std::optional<RecordedWrench> wrench;
 };
 
 /// `robot_description` is the URDF, empty if there is none. Throws ConfigurationError or ModelError, one sentence with

@@ -53,9 +53,10 @@ RawMessage rawOf(const topic_tools::ShapeShifter& message, std::vector<std::uint
 }  // namespace
 
 LiveRecorder::LiveRecorder(const ros::NodeHandle& node, const RecorderConfiguration& configuration,
-                           std::vector<std::unique_ptr<DerivedColumns>> derived)
+                           std::vector<std::unique_ptr<DerivedColumns>> derived, JointStateListener listener)
     : node_(node),
       simulated_time_(ros::Time::isSimTime()),
+      listener_(std::move(listener)),
       reception_(1 + configuration.synchroniser.streams.size()),
       recorder_(configuration, std::move(derived)) {
   node_.setCallbackQueue(&queue_);
@@ -152,7 +153,9 @@ void LiveRecorder::forward(Received& received, Nanoseconds watermark) {
     if (auto* event = std::get_if<Received::JointStates>(&received.message)) {
       topic.type = "sensor_msgs/JointState";
       // The message is ours alone unless another subscriber of this process shares it; then the event gives a copy.
-      recorder_.push(toJointStateSample(std::move(*event->getMessage()), place(arrivalOf(*event))));
+      JointStateSample sample = toJointStateSample(std::move(*event->getMessage()), place(arrivalOf(*event)));
+      if (listener_) listener_(sample);
+      recorder_.push(std::move(sample));
       return;
     }
     const auto& event = std::get<Received::Stream>(received.message);

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -38,9 +39,12 @@ struct TopicStatus {
 /// Both wake at a fixed pace, not for every message: a thousand messages a second cost a hundred wake-ups.
 class LiveRecorder {
  public:
-  /// Subscribes to `joint_states` and the topics of the streams, relative to `node`. Throws what Recorder throws.
+  using JointStateListener = std::function<void(const JointStateSample&)>;
+
+  /// Subscribes to `joint_states` and the topics of the streams, relative to `node`. `listener`, if there is one, hears
+  /// each joint state at once, in the recording thread, while an episode is open or not. Throws what Recorder throws.
   LiveRecorder(const ros::NodeHandle& node, const RecorderConfiguration& configuration,
-               std::vector<std::unique_ptr<DerivedColumns>> derived);
+               std::vector<std::unique_ptr<DerivedColumns>> derived, JointStateListener listener = {});
   ~LiveRecorder();
   LiveRecorder(const LiveRecorder&) = delete;
   LiveRecorder& operator=(const LiveRecorder&) = delete;
@@ -82,6 +86,7 @@ class LiveRecorder {
   ros::NodeHandle node_;
   ros::CallbackQueue queue_;
   const bool simulated_time_;
+  const JointStateListener listener_;
   ReceptionQueue reception_;
   std::atomic<Nanoseconds> watermark_{0};
   std::atomic<bool> ending_{false};

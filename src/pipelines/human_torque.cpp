@@ -34,17 +34,7 @@ struct Recording {
 
 EffortMetadata meaningOf(const Demonstration& demonstration, const HumanTorqueOptions& options) {
   EffortMetadata meaning = options.effort.value_or(demonstration.metadata.effort);
-  if (meaning.side != "motor" && meaning.side != "link") {
-    throw ConfigurationError("effort: side is \"" + meaning.side + "\", expected motor or link.");
-  }
-  if (meaning.timing != "instant" && meaning.timing != "held") {
-    throw ConfigurationError("effort: timing is \"" + meaning.timing + "\", expected instant or held.");
-  }
-  if (meaning.timing == "held" && !(meaning.control_period > 0.0)) {
-    throw ConfigurationError(
-        "effort: control_period is " + print(meaning.control_period) +
-        " s, expected that of the arm's controller, since its efforts are held: a held effort acts half of it late.");
-  }
+  validate(meaning);
   return meaning;
 }
 

@@ -41,6 +41,16 @@ void OpenEpisode::write(const Row& row) {
   writer_->write(complete_row_);
 }
 
+std::vector<Fault> OpenEpisode::faults() const {
+  std::vector<Fault> faults;
+  if (!writer_) return faults;
+  for (const auto& derived : derived_) {
+    const std::vector<Fault> more = derived->faults();
+    faults.insert(faults.end(), more.begin(), more.end());
+  }
+  return faults;
+}
+
 const std::string& OpenEpisode::id() const { return writer_ ? writer_->id() : reservation_->id(); }
 
 std::filesystem::path OpenEpisode::file() const { return writer_ ? writer_->file() : reservation_->file(); }

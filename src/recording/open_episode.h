@@ -29,6 +29,9 @@ class OpenEpisode {
   /// Derives the row's other values and hands it to the disk's threads.
   void write(const Row& row);
 
+  /// What the derived columns have to say.
+  std::vector<Fault> faults() const;
+
   const std::string& id() const;
   std::filesystem::path file() const;
 

@@ -193,6 +193,8 @@ Metadata Recorder::Implementation::everything(const char* status) const {
   metadata.streams = synchroniser_.streams();
   metadata.counters = synchroniser_.counters();
   metadata.faults = synchroniser_.faults();
+  const std::vector<Fault> of_derived_columns = episode_->faults();
+  metadata.faults.insert(metadata.faults.end(), of_derived_columns.begin(), of_derived_columns.end());
   for (const auto& [counter, total] : lost_) {
     const auto before = lost_before_.find(counter);
     metadata.counters[counter] = total - (before == lost_before_.end() ? 0 : std::min(before->second, total));

@@ -159,6 +159,7 @@ RecorderStatus Recorder::Implementation::status() const {
   if (episode_) {
     status.id = episode_->id();
     status.file = episode_->file();
+    add(episode_->faults(), status.faults);
     if (const EpisodeWriter* writer = episode_->writer(); writer != nullptr) {
       add(writer->faults(), status.faults);
       status.rows = writer->rows();

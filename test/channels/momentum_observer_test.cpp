@@ -109,51 +109,57 @@ TEST(VelocityFilterTest, FollowsARampExactlyOnceSettledAtUnevenStamps) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> interval(0.2e-3, 2e-3);
   VelocityFilter filter(1, 30.0);
-  Eigen::VectorXd velocity;
   double t = 0.0;
-  filter.update(0.0, one(0.0), velocity);
+  filter.update(0.0, one(0.0));
   for (int k = 0; k < 1000; ++k) {
     const double dt = interval(random);
     t += dt;
-    ASSERT_TRUE(filter.update(dt, one(0.7 * t), velocity));
+    ASSERT_TRUE(filter.update(dt, one(0.7 * t)));
   }
-  EXPECT_NEAR(velocity[0], 0.7, 1e-9);
+  EXPECT_NEAR(filter.velocity()[0], 0.7, 1e-9);
 }
 
 TEST(VelocityFilterTest, AnswersAStepOfVelocityAsButterworthDoes) {
   const double omega = 2.0 * kPi * 30.0;
   const double a = omega / std::sqrt(2.0);
   VelocityFilter filter(1, 30.0);
-  Eigen::VectorXd velocity;
-  filter.update(0.0, one(0.0), velocity);
+  EXPECT_FALSE(filter.update(0.0, one(0.0))) << "one position says nothing of velocity";
+  EXPECT_TRUE(filter.update(0.001, one(0.0)));
   for (int k = 1; k <= 100; ++k) {
-    filter.update(0.001, one(0.001 * k), velocity);
+    filter.update(0.001, one(0.001 * k));
     const double t = 0.001 * k;
-    EXPECT_NEAR(velocity[0], 1.0 - std::exp(-a * t) * (std::cos(a * t) + std::sin(a * t)), 1e-9) << t;
+    EXPECT_NEAR(filter.velocity()[0], 1.0 - std::exp(-a * t) * (std::cos(a * t) + std::sin(a * t)), 1e-9) << t;
   }
 }
 
 TEST(VelocityFilterTest, IsLateByTheDelayItStates) {
   VelocityFilter filter(1, 30.0);
-  Eigen::VectorXd velocity;
   const double dt = 0.001;
   double largest = 0.0;
   for (int k = 0; k < 4000; ++k) {
     const double t = dt * k;
-    filter.update(dt, one(-std::cos(2.0 * kPi * t) / (2.0 * kPi)), velocity);
-    if (k > 500) largest = std::max(largest, std::abs(velocity[0] - std::sin(2.0 * kPi * (t - filter.delay()))));
+    filter.update(dt, one(-std::cos(2.0 * kPi * t) / (2.0 * kPi)));
+    if (k > 500)
+      largest = std::max(largest, std::abs(filter.velocity()[0] - std::sin(2.0 * kPi * (t - filter.delay()))));
   }
   EXPECT_LT(largest, 1e-4) << "a millisecond more or less would be 6e-3";
 }
 
 TEST(VelocityFilterTest, SamplesTooRareForItsCutOffGiveNothing) {
   VelocityFilter filter(1, 30.0);
-  Eigen::VectorXd velocity;
-  EXPECT_TRUE(filter.update(0.0, one(0.0), velocity));
-  EXPECT_FALSE(filter.update(0.01, one(0.1), velocity)) << "100 Hz are less than four times 30 Hz";
-  EXPECT_TRUE(std::isnan(velocity[0]));
-  EXPECT_TRUE(filter.update(0.008, one(0.1), velocity)) << "the first of a new beginning";
-  EXPECT_TRUE(filter.update(0.008, one(0.1), velocity));
+  EXPECT_FALSE(filter.update(0.0, one(0.0)));
+  EXPECT_FALSE(filter.update(0.01, one(0.1))) << "100 Hz are less than four times 30 Hz";
+  EXPECT_TRUE(filter.update(0.008, one(0.1))) << "the second of a new beginning";
+  EXPECT_DOUBLE_EQ(filter.velocity()[0], 0.0);
+}
+
+TEST(VelocityFilterTest, KnowsTheVelocityOfAnArmThatMovesAlreadyFromItsSecondSampleOn) {
+  VelocityFilter filter(1, 30.0);
+  filter.update(0.0, one(5.0));
+  for (int k = 1; k <= 50; ++k) {
+    ASSERT_TRUE(filter.update(0.001, one(5.0 + 0.0007 * k)));
+    EXPECT_NEAR(filter.velocity()[0], 0.7, 1e-9);
+  }
 }
 
 }  // namespace

@@ -146,6 +146,66 @@ TEST(DemoLoggerParametersTest, AnUnknownNameIsRefusedAtEveryLevel) {
             0U);
 }
 
+TEST(DemoLoggerParametersTest, HumanTorqueIsAFlagOrAGroupAndAsksForTheWholeChain) {
+  XmlRpcValue flag;
+  flag["human_torque"] = true;
+  const DemoLoggerParameters plain = parse(flag, twoLinkUrdf());
+  ASSERT_TRUE(plain.human_torque.has_value());
+  EXPECT_EQ(plain.human_torque->gain, 50.0);
+  EXPECT_EQ(plain.human_torque->cutoff, 30.0);
+  EXPECT_EQ(plain.robot->tip, "tool_tip");
+
+  XmlRpcValue group;
+  group["human_torque"]["gain"] = 100;
+  group["human_torque"]["gravity_compensated"] = true;
+  group["human_torque"]["wrench"] = "ft";
+  group["human_torque"]["wrench_link"] = "link_1";
+  group["streams"][0]["name"] = "ft";
+  group["effort"]["side"] = "link";
+  const DemoLoggerParameters detailed = parse(group, twoLinkUrdf());
+  EXPECT_EQ(detailed.human_torque->gain, 100.0);
+  EXPECT_TRUE(detailed.human_torque->gravity_compensated);
+  EXPECT_EQ(detailed.human_torque->effort.side, "link");
+  EXPECT_EQ(detailed.wrench->arm_to_sensor.jointNames(), std::vector<std::string>{"joint_1"});
+  EXPECT_EQ(detailed.recorder.synchroniser.streams[1].type, StreamType::wrench) << "its columns are always there";
+
+  XmlRpcValue off;
+  off["human_torque"]["observe"] = false;
+  EXPECT_FALSE(parse(off).human_torque.has_value()) << "and no robot is asked for";
+  off["human_torque"] = false;
+  EXPECT_FALSE(parse(off).human_torque.has_value());
+}
+
+TEST(DemoLoggerParametersTest, WhatHumanTorqueCannotDoWithoutIsNamed) {
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"] = true; }),
+            "/demo_logger/human_torque is given but robot_description is not set, here or in a namespace above; "
+            "expected the URDF of the arm there, or neither.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"] = "yes"; }, twoLinkUrdf()),
+            "/demo_logger/human_torque is the text \"yes\", expected true or false.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"]["gain"] = 0.0; }, twoLinkUrdf()),
+            "/demo_logger/human_torque/gain is 0 1/s, expected a number from 0.1 to 10000 1/s.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"]["wrench"] = "ft"; }, twoLinkUrdf()),
+            "/demo_logger/human_torque/wrench is \"ft\", which is no stream; expected the name of one of "
+            "/demo_logger/streams, of geometry_msgs/WrenchStamped.");
+  EXPECT_EQ(refusal(
+                [](XmlRpcValue& values) {
+                  values["human_torque"]["wrench"] = "ft";
+                  values["human_torque"]["wrench_link"] = "wrist";
+                  values["streams"][0]["name"] = "ft";
+                },
+                twoLinkUrdf())
+                .rfind("/demo_logger/human_torque/wrench_link: ", 0),
+            0U);
+  EXPECT_EQ(refusal(
+                [](XmlRpcValue& values) {
+                  values["human_torque"] = true;
+                  values["effort"]["timing"] = "held";
+                },
+                twoLinkUrdf()),
+            "/demo_logger/effort: control_period is 0 s, expected that of the arm's controller, since its efforts are "
+            "held: a held effort acts half of it late.");
+}
+
 TEST(DemoLoggerParametersTest, AStreamThatTwoShareOrALinkThatIsMissingIsASentence) {
   EXPECT_NE(refusal([](XmlRpcValue& values) {
               values["streams"][0]["name"] = "wrench";

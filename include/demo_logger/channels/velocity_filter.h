@@ -2,13 +2,12 @@
 
 #include <Eigen/Core>
 
+#include "demo_logger/channels/low_pass.h"
+
 namespace demo_logger {
 
-/// Velocities from measured positions as they come: the difference quotient of the last two, through a Butterworth
-/// low-pass of second order, v̈ + √2 ω v̇ + ω² v = ω² q̇. Between two samples q̇ counts as constant, and the filter's
-/// answer to that is exact for any interval, so that uneven stamps do it no harm.
-///
-/// Slow motions come out late by delay() = √2 / ω; the difference adds nothing, being the mean over its interval.
+/// Velocities from measured positions as they come: the difference quotient of the last two, through a LowPass. The
+/// quotient is the mean over its interval, so that uneven stamps do no harm and only the filter makes it late.
 class VelocityFilter {
  public:
   static constexpr double kFewestSamplesPerPeriod = 4.0;  // of the cut-off; with fewer the filter has nothing to filter
@@ -19,19 +18,26 @@ class VelocityFilter {
   /// Forgets everything, as before the first sample.
   void restart();
 
-  /// `dt` [s] since the sample before, ignored for the first, which says nothing of velocity: zero. Returns false, and
-  /// NaN, where samples come too rarely for the cut-off, or where one is not finite; it restarts then. `velocity` is
-  /// resized if need be; nothing else is allocated.
-  bool update(double dt, const Eigen::VectorXd& position, Eigen::VectorXd& velocity);
+  /// `dt` [s] since the sample before. Returns false for the first sample (whose `dt` is ignored), for one more than
+  /// longestInterval() after the one before or not after it, which is the first of a new beginning, and for one that is
+  /// not finite. The second sample's velocity is the difference quotient, so that an arm may be moving when it begins.
+  /// Nothing is allocated.
+  bool update(double dt, const Eigen::VectorXd& position);
 
-  double delay() const;  // [s]
+  /// Of the last update, if that returned true.
+  const Eigen::VectorXd& velocity() const { return filter_.value(); }
+  /// The position that changes with that velocity, and is as late:  ω² x = ω² q − √2 ω v − v̇
+  void position(Eigen::VectorXd& result) const;
+
+  double delay() const { return filter_.delay(); }  // [s]
+  double longestInterval() const;                   // [s]
 
  private:
-  double omega_;
-  bool started_ = false;
+  LowPass filter_;
+  bool has_position_ = false;
+  bool has_velocity_ = false;
   Eigen::VectorXd last_;
-  Eigen::VectorXd velocity_;
-  Eigen::VectorXd rate_;  // of the velocity
+  Eigen::VectorXd quotient_;
 };
 
 }  // namespace demo_logger

@@ -5,6 +5,7 @@
 
 #include "demo_logger/recording/synchroniser.h"
 #include "demo_logger/trajectory/column.h"
+#include "demo_logger/trajectory/metadata.h"
 
 namespace demo_logger {
 
@@ -16,6 +17,8 @@ class DerivedColumns {
   virtual std::vector<Column> open(const std::vector<Column>& recorded) = 0;
   /// Appends its values to row.values, NaN where they cannot be computed. Never throws.
   virtual void append(Row& row) = 0;
+  /// Why values are missing, since the episode opened: for its sidecar and the status.
+  virtual std::vector<Fault> faults() const { return {}; }
 };
 
 }  // namespace demo_logger

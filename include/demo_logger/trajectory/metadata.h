@@ -31,6 +31,10 @@ struct EffortMetadata {
   double control_period = 0.0;  // [s] of the arm's controller, 0 if unknown
 };
 
+/// Throws ConfigurationError where it cannot be told from it when and on which side a torque acted: an unknown side or
+/// timing, or held efforts without a control period.
+void validate(const EffortMetadata& effort);
+
 /// The map from the device to the command: output = gain * input + offset.
 struct TeleopMapMetadata {
   std::string mode;                       // rate or pose

@@ -1,0 +1,54 @@
+#include "src/nodes/human_torque_publisher.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "src/ros/message_conversion.h"
+
+namespace demo_logger {
+namespace {
+
+constexpr std::uint32_t kQueue = 1000;  // messages
+
+}  // namespace
+
+HumanTorquePublisher::HumanTorquePublisher(ros::NodeHandle private_node, const RobotDescription& robot,
+                                           const HumanTorqueObserverConfiguration& configuration)
+    : observer_(robot, configuration),
+      publisher_(private_node.advertise<sensor_msgs::JointState>("human_torque", kQueue)),
+      q_(static_cast<Eigen::Index>(robot.joints.size())),
+      effort_(q_),
+      torque_(q_) {
+  message_.name = robot.jointNames();
+  message_.effort.resize(robot.joints.size());
+}
+
+void HumanTorquePublisher::onJointState(const JointStateSample& sample) {
+  const Nanoseconds stamp = sample.arrival.stamp != 0 ? sample.arrival.stamp : sample.arrival.receipt;
+  const bool late = last_ && stamp <= *last_ && stamp + kNanosecondsPerSecond > *last_;
+  if (late || !take(sample)) return;
+  last_ = stamp;
+  observer_.update(stamp, q_, effort_, torque_);
+  message_.header.stamp = toRosTime(stamp);
+  std::copy(torque_.begin(), torque_.end(), message_.effort.begin());
+  publisher_.publish(message_);
+}
+
+/// Whether the message carries the arm.
+bool HumanTorquePublisher::take(const JointStateSample& sample) {
+  const std::size_t n = message_.name.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    std::size_t place = i;  // a driver that names no joint sends them in order
+    if (!sample.names.empty()) {
+      const auto found = std::find(sample.names.begin(), sample.names.end(), message_.name[i]);
+      place = static_cast<std::size_t>(found - sample.names.begin());
+    }
+    if (place >= sample.position.size()) return false;
+    const auto joint = static_cast<Eigen::Index>(i);
+    q_[joint] = sample.position[place];
+    effort_[joint] = place < sample.effort.size() ? sample.effort[place] : std::numeric_limits<double>::quiet_NaN();
+  }
+  return true;
+}
+
+}  // namespace demo_logger
