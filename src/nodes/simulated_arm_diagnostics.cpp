@@ -29,6 +29,7 @@ void SimulatedArmNode::report(TickClock& clock, const ArmTick& tick, std::uint64
   report_.faults = faults_.counters();
   report_.dropped += dropped;
   report_.mode = toString(tick.applied.mode);
+  report_.q = tick.truth.q;
   report_.reason = tick.applied.reason;
   report_.clock_mismatches = arm_.controller().clockMismatches();
 }

@@ -183,7 +183,7 @@ SimulatedArmNode::Inbox SimulatedArmNode::takeInbox() {
 void SimulatedArmNode::tick(TickClock& clock) {
   answerStateRequests();
   const Inbox inbox = takeInbox();
-  if (inbox.mode) arm_.setMode(*inbox.mode);
+  if (inbox.mode) arm_.setMode(inbox.mode->first, inbox.mode->second);
   if (inbox.load) arm_.setLoad(*inbox.load);
   if (inbox.reset) arm_.reset();
   const std::uint64_t refused = arm_.refused();

@@ -59,7 +59,7 @@ class SimulatedArmNode {
     std::vector<SentWrench> wrenches;
     std::vector<std::pair<std::string, std::string>> refusals;  // from whom, why
     std::uint64_t dropped = 0;
-    std::optional<ControlMode> mode;
+    std::optional<std::pair<ControlMode, ImpedanceGains>> mode;
     std::optional<std::optional<BodyInertia>> load;
     bool reset = false;
   };
@@ -73,6 +73,7 @@ class SimulatedArmNode {
     Nanoseconds largest_delay = 0;
     bool paused = false;
     std::string mode;
+    Eigen::VectorXd q;
     std::string reason;
     std::vector<std::string> clock_mismatches;
     JointStateFaults::Counters faults;
@@ -91,6 +92,7 @@ class SimulatedArmNode {
   bool applyWrench(ApplyWrench::Request& request, ApplyWrench::Response& response);
   bool saveState(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool setControlMode(SetControlMode::Request& request, SetControlMode::Response& response);
+  ImpedanceGains requestedGains(ControlMode mode, const SetControlMode::Request& request);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool setPaused(bool paused);
 

@@ -124,6 +124,25 @@ RobotDescription readDrives(Parameters parameters, const RobotDescription& robot
   return withDrives(robot, drives);
 }
 
+struct Gains {
+  std::vector<double> stiffness;
+  std::vector<double> damping;
+};
+
+Gains readImpedance(Parameters parameters) {
+  Gains gains;
+  gains.stiffness = parameters.numbers("stiffness", {}, {0.0, INFINITY, "N m/rad or N/m"});
+  gains.damping = parameters.numbers("damping", {}, {0.0, INFINITY, "N m s/rad or N s/m"});
+  parameters.rejectUnknown();
+  return gains;
+}
+
+/// One for all joints becomes one for each.
+Eigen::VectorXd spread(const std::vector<double>& values, std::size_t joints) {
+  if (values.size() == 1) return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(joints), values.front());
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
 int ticksPerJointState(Parameters& parameters, int control_rate) {
   const double rate = parameters.number("publish_rate", 500.0, {1.0, static_cast<double>(control_rate), "Hz"});
   const double ticks = control_rate / rate;
@@ -185,6 +204,7 @@ SimulatedArmParameters readSimulatedArmParameters(const ros::NodeHandle& private
   controller.effort_gravity_compensation =
       parameters.flag("effort_gravity_compensation", controller.effort_gravity_compensation);
   controller.position_margin = parameters.number("position_margin", controller.position_margin, {0.0, 0.5, "rad or m"});
+  const Gains impedance = readImpedance(parameters.group("impedance"));
   arm.integrator = parameters.choice("integrator", "semi_implicit_euler", {"semi_implicit_euler", "runge_kutta_4"}) ==
                            "runge_kutta_4"
                        ? Integrator::runge_kutta_4
@@ -202,6 +222,8 @@ SimulatedArmParameters readSimulatedArmParameters(const ros::NodeHandle& private
   const std::string urdf = readRobotDescription(private_node);
   result.robot = readDrives(drives, describeRobot(urdf, chain));
   for (const std::string& warning : result.robot.warnings) ROS_WARN_STREAM(warning);
+  const std::size_t joints = result.robot.joints.size();
+  controller.impedance = {spread(impedance.stiffness, joints), spread(impedance.damping, joints)};
   result.links = attachedLinks(urdf, chain);
   arm.surroundings.links = result.links;
   validate(result.faults, result.robot.joints.size());

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "demo_logger/formats/atomic_file.h"
+#include "demo_logger/simulation/compliance.h"
 #include "demo_logger/trajectory/error.h"
 #include "src/nodes/simulated_arm_node.h"
 
@@ -45,16 +46,31 @@ void SimulatedArmNode::advertiseServices(ros::NodeHandle& private_node) {
   }
 }
 
+/// What an arm of this configuration may be given, judged here and not in the control loop, which it would hold up.
+ImpedanceGains SimulatedArmNode::requestedGains(ControlMode mode, const SetControlMode::Request& request) {
+  const bool asked = !request.stiffness.empty() || !request.damping.empty();
+  if (asked && mode != ControlMode::impedance) {
+    throw ConfigurationError("mode " + request.mode + " takes neither stiffness nor damping, expected both empty.");
+  }
+  const ImpedanceGains defaults = arm_.controller().impedanceGains();  // never changes
+  if (!asked) return defaults;
+  Eigen::VectorXd q;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    q = report_.q;
+  }
+  ImpedanceGains gains = impedanceGains(parameters_.robot, request.stiffness, request.damping, defaults);
+  requireStable(gains, parameters_.robot, parameters_.arm.controller.control_period, q);
+  return gains;
+}
+
 bool SimulatedArmNode::setControlMode(SetControlMode::Request& request, SetControlMode::Response& response) {
   response.success = 0U;
   try {
     const ControlMode mode = toControlMode(request.mode);
-    if (!request.stiffness.empty() || !request.damping.empty()) {
-      response.message = "mode " + request.mode + " takes neither stiffness nor damping, expected both empty.";
-      return true;
-    }
+    const ImpedanceGains gains = requestedGains(mode, request);
     const std::lock_guard<std::mutex> lock(mutex_);
-    inbox_.mode = mode;
+    inbox_.mode = {mode, gains};
   } catch (const ConfigurationError& error) {
     response.message = error.what();
     return true;

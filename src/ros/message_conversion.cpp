@@ -49,7 +49,7 @@ std::string commandUnit(const std::string& mode, const std::string& component) {
   if (mode == "velocity") {
     return "rad/s";
   }
-  return mode == "position" || mode == "trajectory" ? "rad" : "N m";
+  return mode == "position" || mode == "trajectory" || mode == "impedance" ? "rad" : "N m";
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <optional>
 #include <utility>
 
+#include "compliant_law.h"
 #include "demo_logger/simulation/command_gate.h"
+#include "demo_logger/simulation/compliance.h"
 #include "demo_logger/trajectory/error.h"
 #include "effort_guard.h"
 #include "joint_servo.h"
@@ -72,7 +74,10 @@ class ArmController::Implementation {
         follower_(model_.description().joints, configuration.max_acceleration),
         reference_(model_.description().joints, configuration),
         servo_(model_, configuration),
-        guard_(model_, servo_, configuration) {}
+        guard_(model_, servo_, configuration),
+        gains_(configuredGains(model_.description(), configuration)) {
+    if (isCompliant(mode_)) comply(gains_);
+  }
 
   AppliedControl tick(Nanoseconds now, const ArmState& state, const std::vector<ArmCommand>& commands) {
     Reasons reasons;
@@ -85,11 +90,11 @@ class ArmController::Implementation {
     }
     follower_.advance(now);
     const ArmCommand* command = gate_.inForce(now);
-    if (command == nullptr) reasons.add(gate_.whyNone());
+    if (command == nullptr && !isCompliant(mode_)) reasons.add(gate_.whyNone());
 
     AppliedControl applied;
     applied.mode = mode_;
-    applied.names = mode_ == ControlMode::cartesian_velocity ? twistNames() : model_.description().jointNames();
+    applied.names = componentNames();
     if (!sound) {
       reasons.add("the state of the arm is not finite; motors off");
       applied.command = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(applied.names.size()));
@@ -98,19 +103,24 @@ class ArmController::Implementation {
       control(now, command, state, applied, reasons);
     }
     applied.reason = reasons.text();
+    torque_ = applied.torque;
     return applied;
   }
 
-  void setMode(ControlMode mode) {
+  void setMode(ControlMode mode, const ImpedanceGains& gains) {
     mode_ = mode;
     follower_.clear();
     gate_.clear("no command yet since mode " + toString(mode) + " was chosen");
+    if (isCompliant(mode)) comply(gains);
   }
+  void setMode(ControlMode mode) { setMode(mode, gains_); }
 
   void reset() {
     reference_.follow(Eigen::VectorXd::Zero(model_.size()));
     follower_.clear();
     gate_.reset();
+    torque_.resize(0);
+    compliance_.reengage();
   }
 
   void setDescription(const RobotDescription& description) { model_ = RobotModel(description); }
@@ -122,16 +132,43 @@ class ArmController::Implementation {
     snapshot.part("gate", [&](Snapshot& inside) { gate_.exchange(inside); });
     snapshot.part("path", [&](Snapshot& inside) { follower_.exchange(inside); });
     snapshot.part("reference", [&](Snapshot& inside) { reference_.exchange(inside); });
+    snapshot.part("compliance", [&](Snapshot& inside) { compliance_.exchange(inside); });
+    snapshot.value("torque", torque_);
     snapshot.value("refused", refused_);
   }
 
   const ArmControllerConfiguration& configuration() const { return configuration_; }
   ControlMode mode() const { return mode_; }
+  const ImpedanceGains& gains() const { return gains_; }
   std::uint64_t refused() const { return refused_; }
   std::vector<std::string> clockMismatches() const { return gate_.clockMismatches(); }
 
  private:
   const std::vector<ArmJoint>& joints() const { return model_.description().joints; }
+
+  std::vector<std::string> componentNames() const {
+    if (mode_ == ControlMode::gravity_compensation) return {};
+    return mode_ == ControlMode::cartesian_velocity ? twistNames() : model_.description().jointNames();
+  }
+
+  /// What stands in the configuration, or else what suits the arm.
+  static ImpedanceGains configuredGains(const RobotDescription& arm, const ArmControllerConfiguration& configuration) {
+    const ImpedanceGains& given = configuration.impedance;
+    const auto all = [](const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); };
+    ImpedanceGains gains;
+    if (given.stiffness.size() == 0 || given.damping.size() == 0) {
+      gains = defaultImpedanceGains(arm, configuration.control_period);
+    }
+    gains = demo_logger::impedanceGains(arm, all(given.stiffness), all(given.damping), gains);
+    requireStable(gains, arm, configuration.control_period);
+    return gains;
+  }
+
+  void comply(const ImpedanceGains& gains) {
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(model_.size());
+    const auto fading = static_cast<int>(std::lround(kHandover / configuration_.control_period));
+    compliance_.engage(mode_ == ControlMode::impedance ? gains : ImpedanceGains{none, none}, torque_, fading);
+  }
 
   /// A path must begin where the arm is meant to be, which a gate cannot know.
   std::string admit(const ArmCommand& command, Nanoseconds now, const ArmState& state) {
@@ -167,6 +204,9 @@ class ArmController::Implementation {
         return followPosition(targetOf(*command, now), state, applied, reasons);
       case ControlMode::trajectory:
         return followPath(now, state, applied, reasons);
+      case ControlMode::gravity_compensation:
+      case ControlMode::impedance:
+        return giveWay(state, applied, reasons);
     }
   }
 
@@ -177,6 +217,12 @@ class ArmController::Implementation {
     const Eigen::VectorXd torque = asked + compensation;
     applied.torque = guard_.guarded(torque, state, reasons);
     applied.command = applied.torque == torque ? asked : Eigen::VectorXd(applied.torque - compensation);
+  }
+
+  void giveWay(const ArmState& state, AppliedControl& applied, Reasons& reasons) {
+    reference_.follow(state.dq);
+    applied.torque = guard_.guarded(compliance_.torque(model_, state), state, reasons);
+    applied.command = mode_ == ControlMode::impedance ? compliance_.reference() : Eigen::VectorXd();
   }
 
   void brake(const ArmState& state, AppliedControl& applied, Reasons& reasons) {
@@ -277,6 +323,9 @@ class ArmController::Implementation {
   VelocityReference reference_;
   JointServo servo_;
   EffortGuard guard_;
+  ImpedanceGains gains_;  // of the configuration
+  CompliantLaw compliance_;
+  Eigen::VectorXd torque_;  // of the last tick; empty: none since the start or a reset
   std::uint64_t refused_ = 0;
 };
 
@@ -296,7 +345,9 @@ ArmController& ArmController::operator=(ArmController&&) noexcept = default;
 
 const ArmControllerConfiguration& ArmController::configuration() const { return implementation_->configuration(); }
 ControlMode ArmController::mode() const { return implementation_->mode(); }
+const ImpedanceGains& ArmController::impedanceGains() const { return implementation_->gains(); }
 void ArmController::setMode(ControlMode mode) { implementation_->setMode(mode); }
+void ArmController::setMode(ControlMode mode, const ImpedanceGains& gains) { implementation_->setMode(mode, gains); }
 void ArmController::reset() { implementation_->reset(); }
 void ArmController::setDescription(const RobotDescription& description) {
   implementation_->setDescription(description);

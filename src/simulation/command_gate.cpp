@@ -23,7 +23,9 @@ const std::vector<std::pair<ControlMode, std::string>>& modeNames() {
       {ControlMode::velocity, "velocity"},
       {ControlMode::position, "position"},
       {ControlMode::trajectory, "trajectory"},
-      {ControlMode::cartesian_velocity, "cartesian_velocity"}};
+      {ControlMode::cartesian_velocity, "cartesian_velocity"},
+      {ControlMode::gravity_compensation, "gravity_compensation"},
+      {ControlMode::impedance, "impedance"}};
   return names;
 }
 

@@ -75,6 +75,53 @@ TEST_F(SimulatedArmServicesTest, AWrenchActsForItsDurationAndIsInTheGroundTruth)
   })) << "and it has moved the compliant arm";
 }
 
+TEST_F(SimulatedArmServicesTest, ACompliantArmIsPushedAndNeedsNoCommand) {
+  EXPECT_TRUE(setMode("gravity_compensation").success);
+  const auto complies = [](const AppliedCommand& tick) {
+    return tick.mode == "gravity_compensation" && tick.reason.empty() && tick.command.empty() && tick.name.empty() &&
+           tick.torque.size() == 7;
+  };
+  ASSERT_TRUE(applied.waitUntil(complies));
+  EXPECT_TRUE(push("tool_tip", 15.0, 0.2).success);
+  EXPECT_TRUE(joint_states.waitUntil([](const auto& state) {
+    return std::abs(state.position[0]) + std::abs(state.position[2]) + std::abs(state.position[4]) > 1e-2;
+  }));
+}
+
+TEST_F(SimulatedArmServicesTest, AnArmWithSpringsComesBackFromAPush) {
+  ASSERT_TRUE(joint_states.wait());
+  const SetControlMode::Response response = setMode("impedance", {50.0}, {0.2});
+  ASSERT_TRUE(response.success) << response.message;
+  ASSERT_TRUE(applied.waitUntil([](const AppliedCommand& tick) { return tick.mode == "impedance"; }));
+  const std::vector<double> rest = applied.last().command;
+  ASSERT_EQ(rest.size(), 7U);
+  EXPECT_EQ(applied.last().name.front(), "joint_1");
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_NEAR(rest[i], kInitialPosition[i], 1e-6);
+  EXPECT_TRUE(push("tool_tip", 15.0, 0.2).success);
+  const auto off = [&](const sensor_msgs::JointState& state) { return std::abs(state.position[0] - rest[0]); };
+  EXPECT_TRUE(joint_states.waitUntil([&](const auto& state) { return off(state) > 1e-2; }));
+  EXPECT_TRUE(joint_states.waitUntil([&](const auto& state) {
+    return off(state) < 0.6 / 50.0 + 1e-3 && std::abs(state.velocity[0]) < 1e-3;
+  })) << "but for what its friction of 0.6 N m holds against 50 N m/rad";
+}
+
+TEST_F(SimulatedArmServicesTest, GainsThatCannotBeHeldAreRefusedInASentence) {
+  ASSERT_TRUE(applied.waitUntil([](const AppliedCommand& tick) { return tick.mode == "cartesian_velocity"; }));
+  const SetControlMode::Response stiff = setMode("impedance", {}, {30.0});
+  EXPECT_FALSE(stiff.success);
+  EXPECT_EQ(stiff.message.rfind("impedance: damping of joint_7 is 30 N m s/rad, expected at most ", 0), 0U)
+      << stiff.message;
+  EXPECT_EQ(
+      setMode("impedance", {1.0, 2.0}).message,
+      "impedance: stiffness has 2 values, expected one for each of the 7 joints, one for all of them, or none for "
+      "the defaults.");
+  EXPECT_EQ(setMode("gravity_compensation", {1.0}).message,
+            "mode gravity_compensation takes neither stiffness nor damping, expected both empty.");
+  const std::uint64_t asked = applied.last().tick;
+  ASSERT_TRUE(applied.waitUntil([&](const AppliedCommand& tick) { return tick.tick > asked + 20; }));
+  EXPECT_EQ(applied.last().mode, "cartesian_velocity") << "and nothing has changed";
+}
+
 TEST_F(SimulatedArmServicesTest, ImpossibleWrenchesAreAnsweredInASentence) {
   EXPECT_EQ(push("no_link", 1.0, 1.0).message, "a wrench acts upon \"no_link\", no link of this robot.");
   EXPECT_EQ(push("base_link", 1.0, 1.0).message, "a wrench acts upon \"base_link\", which this arm does not move.");

@@ -35,9 +35,12 @@ class SimulatedArmNodeTest : public testing::Test {
     reset();
   }
 
-  SetControlMode::Response setMode(const std::string& mode) {
+  SetControlMode::Response setMode(const std::string& mode, const std::vector<double>& stiffness = {},
+                                   const std::vector<double>& damping = {}) {
     SetControlMode call;
     call.request.mode = mode;
+    call.request.stiffness = stiffness;
+    call.request.damping = damping;
     EXPECT_TRUE(ros::service::call(node.resolveName("simulated_arm/set_control_mode"), call));
     return call.response;
   }

@@ -200,12 +200,16 @@ TEST(MessageConversionTest, AnAppliedCommandTakesItsUnitsFromTheControlMode) {
 
   message.name = {"elbow", "wrist"};
   const std::vector<std::pair<std::string, std::string>> units = {
-      {"velocity", "rad/s"},           {"position", "rad"}, {"trajectory", "rad"}, {"effort", "N m"},
-      {"gravity_compensation", "N m"}, {"impedance", "N m"}};
+      {"velocity", "rad/s"}, {"position", "rad"}, {"trajectory", "rad"}, {"effort", "N m"}, {"impedance", "rad"}};
   for (const auto& [mode, unit] : units) {
     message.mode = mode;
     EXPECT_EQ(toStreamSample(message, makeArrival()).units, (Names{unit, unit})) << mode;
   }
+
+  message.mode = "gravity_compensation";  // commands nothing
+  message.name.clear();
+  message.command.clear();
+  EXPECT_TRUE(toStreamSample(message, makeArrival()).values.empty());
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ ArmCommand makeCommand(ControlMode mode, int k) {
 
 ArmTick tickAt(SimulatedArm& arm, ControlMode mode, int k, Nanoseconds shift = 0) {
   std::vector<ArmCommand> commands;
-  const bool due = mode == ControlMode::trajectory ? k == 10 : k % 20 == 0 && k < 2400;  // in the end it times out
+  bool due = mode == ControlMode::trajectory ? k == 10 : k % 20 == 0 && k < 2400;  // in the end it times out
+  if (isCompliant(mode)) due = false;
   if (due) commands.push_back(makeCommand(mode, k));
   if (!commands.empty() && commands[0].stamp != 0) commands[0].stamp += shift;
   if (k == 300) arm.setLoad(BodyInertia{0.7, {0.0, 0.01, 0.05}, Eigen::Matrix3d::Identity() * 1e-3});
@@ -118,8 +119,29 @@ TEST_P(ArmStateTest, AlsoOnAClockThatShowsAnotherTime) {
 
 INSTANTIATE_TEST_SUITE_P(Modes, ArmStateTest,
                          testing::Values(ControlMode::velocity, ControlMode::trajectory,
-                                         ControlMode::cartesian_velocity),
+                                         ControlMode::cartesian_velocity, ControlMode::gravity_compensation,
+                                         ControlMode::impedance),
                          [](const auto& test) { return toString(test.param); });
+
+TEST(ArmStateFileTest, AlsoFromTheMiddleOfATakeOverByAnotherMode) {
+  const auto push = [](SimulatedArm& arm, int k) {
+    if (k == 5) arm.applyWrench({6, {0.0, 0.0, 0.2}, {0.0, 9.0, 5.0}, {}, false}, kStart + 400 * kMillisecond);
+    if (k == 100)
+      arm.setMode(ControlMode::impedance, {Eigen::VectorXd::Constant(7, 30.0), Eigen::VectorXd::Ones(7) * 0.3});
+    if (k == 300) arm.setMode(ControlMode::gravity_compensation);
+    return arm.tick(kStart + k * kMillisecond, {});
+  };
+  for (const int saved : {99, 100, 101, 150, 299, 300, 350}) {
+    SimulatedArm arm(describeDemoArm(), everything(ControlMode::gravity_compensation));
+    SimulatedArm restored(describeDemoArm(), everything(ControlMode::velocity));
+    for (int k = 0; k < saved; ++k) push(arm, k);
+    restored.restoreState(arm.saveState());
+    for (int k = saved; k < 600; ++k) {
+      expectSame(push(arm, k), push(restored, k), k);
+      if (HasFatalFailure()) return;
+    }
+  }
+}
 
 TEST(ArmStateFileTest, WhatIsNoStateOfThisArmIsRefusedInASentence) {
   SimulatedArm arm(describeDemoArm(), makeArmConfiguration(ControlMode::velocity));

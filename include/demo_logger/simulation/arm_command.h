@@ -14,7 +14,14 @@ namespace demo_logger {
 ///   position:           a position per joint [rad or m] to go to, and perhaps the velocity at which it moves itself
 ///   trajectory:         a path of joint positions over time
 ///   cartesian_velocity: of the tip, v of its origin [m/s] then ω [rad/s]
-enum class ControlMode { effort, velocity, position, trajectory, cartesian_velocity };
+/// A hand guides the arm, and no command is expected, in the compliant ones:
+///   gravity_compensation: the arm stays where it is put
+///   impedance:            a spring and a damper at each joint, about where the arm was when the mode was chosen
+enum class ControlMode { effort, velocity, position, trajectory, cartesian_velocity, gravity_compensation, impedance };
+
+constexpr bool isCompliant(ControlMode mode) {
+  return mode == ControlMode::gravity_compensation || mode == ControlMode::impedance;
+}
 
 std::string toString(ControlMode mode);
 /// Throws ConfigurationError listing the modes there are.

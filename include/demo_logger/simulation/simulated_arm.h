@@ -67,6 +67,7 @@ class SimulatedArm {
   /// stays.
   void reset();
   void setMode(ControlMode mode) { controller_.setMode(mode); }
+  void setMode(ControlMode mode, const ImpedanceGains& gains) { controller_.setMode(mode, gains); }
 
   /// Everything that decides how it goes on, as JSON: of an arm with the same configuration, to be restored there.
   std::string saveState();
