@@ -118,8 +118,13 @@ Sign signOf(double velocity, double deviation) {
 
 class Recovery {
  public:
-  Recovery(const RobotDescription& robot, const Recording& recording, EffortMetadata meaning, Index rows)
-      : model_(robot), recording_(recording), meaning_(std::move(meaning)), n_(model_.size()) {
+  Recovery(const CalibratedArm& arm, const Recording& recording, EffortMetadata meaning, Index rows)
+      : model_(arm.robot),
+        recording_(recording),
+        meaning_(std::move(meaning)),
+        shows_drives_(meaning_.side == arm.drives_side && recording.effort.size() > 0),
+        n_(model_.size()) {
+    bias_ = shows_drives_ ? arm.torque_bias : Eigen::VectorXd::Zero(n_);
     torque = deviation = velocity = acceleration = Eigen::MatrixXd::Constant(rows, n_, kNaN);
     tool = Eigen::MatrixXd::Constant(rows, 7, kNaN);
     noise_squares_ = Eigen::VectorXd::Zero(n_);
@@ -172,7 +177,8 @@ class Recovery {
     Eigen::VectorXd result = model_.inverseDynamics(q, dq, ddq);
     Eigen::MatrixXd inertia = model_.massMatrix(q);
     Eigen::VectorXd uncertain = Eigen::VectorXd::Zero(n_);
-    if (meaning_.side == "motor" && !effort.empty()) addDrives(dq, ddq, velocity_deviation, result, inertia, uncertain);
+    result += bias_;
+    if (shows_drives_) addDrives(dq, ddq, velocity_deviation, result, inertia, uncertain);
     if (effort.empty() || !meaning_.includes_gravity) result -= model_.gravity(q);
     for (std::size_t i = 0; i < effort.size(); ++i) {
       result[static_cast<Index>(i)] -= effort[i].torque[k];
@@ -221,7 +227,9 @@ class Recovery {
   RobotModel model_;
   const Recording& recording_;
   const EffortMetadata meaning_;
+  const bool shows_drives_;  // the efforts have friction, motor inertia and bias of the drives in them
   const Index n_;
+  Eigen::VectorXd bias_;
   Eigen::VectorXd noise_squares_;
   double rows_ = 0.0;
 };
@@ -255,10 +263,20 @@ std::vector<Column> addedColumns(const RobotDescription& robot) {
 
 HumanTorqueSummary addHumanTorque(const RobotDescription& robot, Demonstration& demonstration,
                                   const HumanTorqueOptions& options) {
+  return addHumanTorque(calibrate(robot, {}), demonstration, options);
+}
+
+HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demonstration,
+                                  const HumanTorqueOptions& options) {
+  const RobotDescription& robot = arm.robot;
   HumanTorqueSummary summary;
   const EffortMetadata meaning = meaningOf(demonstration, options);
   const Recording recording = readJoints(robot, demonstration, options, summary);
-  Recovery recovery(robot, recording, meaning, recording.q.rows());
+  if (meaning.side != arm.drives_side && (arm.drives_side == "link" || !arm.torque_bias.isZero(0.0))) {
+    summary.notes.push_back("the model's biases and friction are those of efforts measured at the " + arm.drives_side +
+                            " side; here they were measured at the " + meaning.side + " side, so neither counts");
+  }
+  Recovery recovery(arm, recording, meaning, recording.q.rows());
   for (const Segment& segment : segmentsOf(demonstration.time, recording.q, options.max_gap, summary)) {
     recovery.recover(demonstration.time, segment);
   }

@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "demo_logger/pipelines/human_torque.h"
+#include "demo_logger/pipelines/model_calibration.h"
+#include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
 #include "src/tool/recording_conversion.h"
 #include "src/tool/verbs.h"
@@ -18,6 +21,7 @@ struct Options {
   std::string side;
   std::optional<double> control_period;
   bool gravity_compensated = false;
+  std::string model;
   double max_gap = HumanTorqueOptions().max_gap;
 };
 
@@ -36,10 +40,23 @@ std::string stepOf(const Options& options) {
   if (!options.side.empty()) step += " --side " + options.side;
   if (options.control_period) step += " --control-period " + print(*options.control_period);
   if (options.gravity_compensated) step += " --gravity-compensated";
+  if (!options.model.empty()) step += " --model " + std::filesystem::path(options.model).filename().string();
   return step + " --max-gap " + print(options.max_gap);
 }
 
-ConversionReport addTorques(const RobotDescription& arm, LoadedDemonstration& recording, const Options& options) {
+/// What was found of a file, with its name in front.
+CalibratedArm calibratedBy(const std::string& model, const RobotDescription& arm) {
+  if (model.empty()) return calibrate(arm, {});
+  try {
+    return calibrate(arm, readModelCalibration(model));
+  } catch (const ModelError& error) {
+    throw FileError(model + ": " + error.what());
+  }
+}
+
+ConversionReport addTorques(const RobotDescription& description, LoadedDemonstration& recording,
+                            const Options& options) {
+  const CalibratedArm arm = calibratedBy(options.model, description);
   HumanTorqueOptions torque;
   torque.effort = meaningOf(recording.demonstration.metadata.effort, options);
   torque.gravity_compensated = options.gravity_compensated;
@@ -53,7 +70,7 @@ ConversionReport addTorques(const RobotDescription& arm, LoadedDemonstration& re
   const auto largest = std::max_element(summary.largest_torque.begin(), summary.largest_torque.end());
   report.sentence = "with the human's torque in " + std::to_string(summary.rows) + " of them, at most " +
                     print(*largest) + " at " +
-                    arm.jointNames()[static_cast<std::size_t>(largest - summary.largest_torque.begin())];
+                    description.jointNames()[static_cast<std::size_t>(largest - summary.largest_torque.begin())];
   report.figures = [summary](nlohmann::ordered_json& object) {
     object["rows_with_torque"] = summary.rows;
     object["encoder_noise"] = summary.encoder_noise;
@@ -81,6 +98,8 @@ void addTorqueVerb(CLI::App& tool, int& exit_code) {
       ->check(CLI::PositiveNumber);
   verb->add_flag("--gravity-compensated", options->gravity_compensated,
                  "the arm was compensated for gravity alone; efforts are not needed");
+  verb->add_option("--model", options->model,
+                   "what was found of the arm beyond its URDF: payload, torque bias, friction (YAML)");
   verb->add_option("--max-gap", options->max_gap, "[s] nothing is concluded across a longer silence")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

@@ -66,5 +66,27 @@ TEST(VerbTorqueTest, WithoutEffortsNothingIsWrittenUnlessGravityWasCompensated) 
   EXPECT_NEAR(std::stod(run.cells("taught.csv")[10][7]), 0.0, 1e-9) << "an arm at rest is let alone";
 }
 
+TEST(VerbTorqueTest, AModelFileTakesItsBiasOffTheEfforts) {
+  const ToolRun run;
+  run.write("held.csv", upright(50));
+  run.write("model.yaml", "side: link\njoints:\n  joint_1: {torque_bias: 0.5}\n");
+  const auto outcome = run("torque held.csv -o taught.csv --side link --effort instant --model model.yaml" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NEAR(std::stod(run.cells("taught.csv")[20][9]), -1.0, 1e-9);
+
+  const auto other_side =
+      run("torque held.csv -o other.csv --side motor --effort instant --model model.yaml" + kTwoLink);
+  EXPECT_NE(other_side.out.find("note: the model's biases and friction are those of efforts measured at the link side; "
+                                "here they were measured at the motor side, so neither counts\n"),
+            std::string::npos)
+      << other_side.out;
+
+  run.write("other.yaml", "joints:\n  joint_9: {torque_bias: 0.5}\n");
+  const auto refused = run("torque held.csv -o none.csv --side link --effort instant --model other.yaml" + kTwoLink);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.err.rfind("other.yaml: no joint 'joint_9' to drive in the arm of robot", 0), 0U) << refused.err;
+  EXPECT_FALSE(run.exists("none.csv"));
+}
+
 }  // namespace
 }  // namespace demo_logger

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "demo_logger/pipelines/model_calibration.h"
 #include "demo_logger/robot/robot_description.h"
 #include "demo_logger/trajectory/demonstration.h"
 
@@ -42,6 +43,11 @@ struct HumanTorqueSummary {
 /// Throws ConfigurationError naming the first joint without a column of positions, efforts that are not there at all
 /// (unless gravity_compensated), an unknown side or timing, or held efforts without their control period; ModelError
 /// for an arm without inertia.
+/// With a calibrated arm, its torque bias is taken off the efforts, and efforts measured at the links show friction and
+/// motor inertia too where the calibration was made with such efforts (drives_side). Efforts of the other side have
+/// neither; a note says so.
+HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demonstration,
+                                  const HumanTorqueOptions& options = {});
 HumanTorqueSummary addHumanTorque(const RobotDescription& robot, Demonstration& demonstration,
                                   const HumanTorqueOptions& options = {});
 

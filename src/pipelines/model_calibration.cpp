@@ -1,0 +1,56 @@
+#include "demo_logger/pipelines/model_calibration.h"
+
+#include <utility>
+
+#include "demo_logger/robot/identified_arm.h"
+#include "demo_logger/trajectory/error.h"
+
+namespace demo_logger {
+
+BodyInertia CalibratedBody::body() const {
+  BodyInertia result;
+  result.mass = mass.value;
+  for (Eigen::Index i = 0; i < 3; ++i) result.center[i] = center[static_cast<std::size_t>(i)].value;
+  std::size_t entry = 0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = i; j < 3; ++j) {
+      result.inertia(i, j) = result.inertia(j, i) = inertia[entry++].value;
+    }
+  }
+  return result;
+}
+
+CalibratedArm calibrate(const RobotDescription& robot, const ModelCalibration& calibration) {
+  if (!calibration.tip.empty() && calibration.payload && calibration.tip != robot.tip) {
+    throw ModelError("the model has a payload at tip '" + calibration.tip + "', but the tip of the arm is '" +
+                     robot.tip + "'; choose the tip that the model was made for");
+  }
+  CalibratedArm arm;
+  arm.drives_side = calibration.side;
+
+  std::map<std::string, BodyInertia> bodies;
+  for (const auto& [joint, body] : calibration.bodies) bodies[joint] = body.body();
+  arm.robot = withBodies(robot, bodies);
+  if (calibration.payload) arm.robot = withPayload(arm.robot, calibration.payload->body());
+
+  std::map<std::string, JointDrive> drives;
+  const auto valueOf = [](const std::optional<CalibratedValue>& calibrated) {
+    return calibrated ? std::optional<double>(calibrated->value) : std::nullopt;
+  };
+  for (const auto& [joint, found] : calibration.joints) {
+    drives[joint] = {valueOf(found.motor_inertia), valueOf(found.damping), valueOf(found.friction),
+                     found.friction_velocity};
+  }
+  arm.robot = withDrives(arm.robot, drives);
+
+  arm.torque_bias = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(robot.joints.size()));
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const auto found = calibration.joints.find(robot.joints[i].name);
+    if (found != calibration.joints.end() && found->second.torque_bias) {
+      arm.torque_bias[static_cast<Eigen::Index>(i)] = found->second.torque_bias->value;
+    }
+  }
+  return arm;
+}
+
+}  // namespace demo_logger
