@@ -22,7 +22,8 @@ std::vector<std::unique_ptr<DerivedColumns>> makeDerivedColumns(const DemoLogger
     derived.push_back(std::make_unique<ToolPose>(*parameters.robot));
   }
   if (parameters.human_torque) {
-    derived.push_back(std::make_unique<HumanTorqueColumns>(*parameters.robot, *parameters.human_torque));
+    derived.push_back(
+        std::make_unique<HumanTorqueColumns>(parameters.human_torque->arm, parameters.human_torque->observer));
   }
   if (parameters.wrench) {
     derived.push_back(
@@ -34,7 +35,7 @@ std::vector<std::unique_ptr<DerivedColumns>> makeDerivedColumns(const DemoLogger
 std::optional<HumanTorquePublisher> makeHumanTorquePublisher(const ros::NodeHandle& private_node,
                                                              const DemoLoggerParameters& parameters) {
   if (!parameters.human_torque) return std::nullopt;
-  return HumanTorquePublisher(private_node, *parameters.robot, *parameters.human_torque);
+  return HumanTorquePublisher(private_node, parameters.human_torque->arm, parameters.human_torque->observer);
 }
 
 std::string stateName(RecorderState state) {

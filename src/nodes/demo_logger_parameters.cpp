@@ -103,6 +103,7 @@ Buttons parseButtons(Parameters parameters) {
 /// What `human_torque` says, before the robot is known: `true`, or a group that says more.
 struct HumanTorqueRequest {
   std::optional<HumanTorqueObserverConfiguration> observer;
+  std::string model;        // file
   std::string wrench;       // name of a stream
   std::string wrench_link;  // empty: the tip
 
@@ -122,6 +123,7 @@ HumanTorqueRequest parseHumanTorque(Parameters& parameters, const EffortMetadata
     observer.gain = group.number("gain", observer.gain, {0.1, 10000.0, "1/s"});
     observer.cutoff = group.number("cutoff", observer.cutoff, {0.1, 10000.0, "Hz"});
     observer.gravity_compensated = group.flag("gravity_compensated", observer.gravity_compensated);
+    request.model = group.text("model", "");
     request.wrench = group.text("wrench", "");
     request.wrench_link = group.text("wrench_link", "");
     group.rejectUnknown();
@@ -182,12 +184,12 @@ std::map<std::string, ParameterValue> describeParameters(const DemoLoggerParamet
                                                      {"correct_clock_offset", synchroniser.correct_clock_offset},
                                                      {"autostart", configuration.autostart},
                                                      {"joints", synchroniser.joints}};
-  if (parameters.human_torque) {
-    const HumanTorqueObserver observer(*parameters.robot, *parameters.human_torque);
-    described["human_torque/gain"] = parameters.human_torque->gain;
-    described["human_torque/cutoff"] = parameters.human_torque->cutoff;
-    described["human_torque/gravity_compensated"] = parameters.human_torque->gravity_compensated;
-    described["human_torque/delay"] = observer.delay();
+  if (const auto& human = parameters.human_torque) {
+    described["human_torque/gain"] = human->observer.gain;
+    described["human_torque/cutoff"] = human->observer.cutoff;
+    described["human_torque/gravity_compensated"] = human->observer.gravity_compensated;
+    described["human_torque/delay"] = HumanTorqueObserver(human->arm, human->observer).delay();
+    if (!human->model.empty()) described["human_torque/model"] = human->model;
   }
   if (parameters.wrench) {
     described["human_torque/wrench"] = parameters.wrench->stream;
@@ -250,7 +252,10 @@ DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std
   if (result.robot) {
     recordRobot(*result.robot, recorder);
   }
-  result.human_torque = human_torque.observer;
+  if (human_torque.observer) {
+    result.human_torque = {*human_torque.observer, calibrate(*result.robot, std::filesystem::path(human_torque.model)),
+                           human_torque.model};
+  }
   if (!human_torque.wrench.empty()) {
     result.wrench = findWrench(parameters, human_torque, robot_description, *result.robot, synchroniser.streams);
   }
@@ -258,7 +263,7 @@ DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std
   parameters.rejectUnknown();
   try {  // their sentences begin with the field, which is the parameter's name
     validate(synchroniser);
-    if (result.human_torque) validate(result.human_torque->effort);
+    if (result.human_torque) validate(result.human_torque->observer.effort);
   } catch (const ConfigurationError& error) {
     throw ConfigurationError(parameters.fullName(error.what()));
   }

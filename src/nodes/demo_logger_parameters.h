@@ -24,6 +24,13 @@ struct Buttons {
   bool any() const { return start >= 0 || stop >= 0 || success >= 0 || failure >= 0 || discard >= 0; }
 };
 
+/// Whose torque is observed as it happens: of one who guides this arm.
+struct ObservedHuman {
+  HumanTorqueObserverConfiguration observer;
+  CalibratedArm arm;
+  std::string model;  // file that the arm was calibrated by, empty: its URDF
+};
+
 /// A recorded stream of wrenches upon the arm, at a link of it.
 struct RecordedWrench {
   std::string stream;
@@ -35,7 +42,7 @@ struct DemoLoggerParameters {
   RecorderConfiguration recorder;
   Buttons buttons;
   std::optional<RobotDescription> robot;  // for the tool pose, where `base` or `tip` is given, and for human_torque
-  std::optional<HumanTorqueObserverConfiguration> human_torque;
+  std::optional<ObservedHuman> human_torque;
   std::optional<RecordedWrench> wrench;
 };
 

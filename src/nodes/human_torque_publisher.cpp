@@ -12,15 +12,15 @@ constexpr std::uint32_t kQueue = 1000;  // messages
 
 }  // namespace
 
-HumanTorquePublisher::HumanTorquePublisher(ros::NodeHandle private_node, const RobotDescription& robot,
+HumanTorquePublisher::HumanTorquePublisher(ros::NodeHandle private_node, const CalibratedArm& arm,
                                            const HumanTorqueObserverConfiguration& configuration)
-    : observer_(robot, configuration),
+    : observer_(arm, configuration),
       publisher_(private_node.advertise<sensor_msgs::JointState>("human_torque", kQueue)),
-      q_(static_cast<Eigen::Index>(robot.joints.size())),
+      q_(static_cast<Eigen::Index>(arm.robot.joints.size())),
       effort_(q_),
       torque_(q_) {
-  message_.name = robot.jointNames();
-  message_.effort.resize(robot.joints.size());
+  message_.name = arm.robot.jointNames();
+  message_.effort.resize(arm.robot.joints.size());
 }
 
 void HumanTorquePublisher::onJointState(const JointStateSample& sample) {

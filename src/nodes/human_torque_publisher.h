@@ -16,7 +16,7 @@ namespace demo_logger {
 /// recording waits for its stragglers; this does not, but it is the same observer.
 class HumanTorquePublisher {
  public:
-  HumanTorquePublisher(ros::NodeHandle private_node, const RobotDescription& robot,
+  HumanTorquePublisher(ros::NodeHandle private_node, const CalibratedArm& arm,
                        const HumanTorqueObserverConfiguration& configuration);
 
   /// A joint state as it came. One that is not newer than the last is left out, unless the clock was set back.

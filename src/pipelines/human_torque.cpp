@@ -263,7 +263,7 @@ std::vector<Column> addedColumns(const RobotDescription& robot) {
 
 HumanTorqueSummary addHumanTorque(const RobotDescription& robot, Demonstration& demonstration,
                                   const HumanTorqueOptions& options) {
-  return addHumanTorque(calibrate(robot, {}), demonstration, options);
+  return addHumanTorque(calibrate(robot, ModelCalibration()), demonstration, options);
 }
 
 HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demonstration,

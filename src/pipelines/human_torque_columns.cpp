@@ -81,10 +81,10 @@ std::string describe(const HumanTorqueObserver& observer) {
 
 class HumanTorqueColumns::Implementation {
  public:
-  Implementation(const RobotDescription& robot, const HumanTorqueObserverConfiguration& configuration)
-      : observer_(robot, configuration),
+  Implementation(const CalibratedArm& arm, const HumanTorqueObserverConfiguration& configuration)
+      : observer_(arm, configuration),
         gravity_compensated_(configuration.gravity_compensated),
-        q_(static_cast<Index>(robot.joints.size())),
+        q_(static_cast<Index>(arm.robot.joints.size())),
         effort_(q_),
         torque_(q_) {}
 
@@ -156,9 +156,8 @@ class HumanTorqueColumns::Implementation {
   CountedFault not_recorded_, too_slow_, no_effort_;
 };
 
-HumanTorqueColumns::HumanTorqueColumns(const RobotDescription& robot,
-                                       const HumanTorqueObserverConfiguration& configuration)
-    : implementation_(std::make_unique<Implementation>(robot, configuration)) {}
+HumanTorqueColumns::HumanTorqueColumns(const CalibratedArm& arm, const HumanTorqueObserverConfiguration& configuration)
+    : implementation_(std::make_unique<Implementation>(arm, configuration)) {}
 HumanTorqueColumns::~HumanTorqueColumns() = default;
 
 std::vector<Column> HumanTorqueColumns::open(const std::vector<Column>& recorded) {

@@ -34,11 +34,12 @@ void validate(const HumanTorqueObserverConfiguration& configuration) {
   validate(configuration.effort);
 }
 
-HumanTorqueObserver::HumanTorqueObserver(const RobotDescription& robot,
+HumanTorqueObserver::HumanTorqueObserver(const CalibratedArm& arm,
                                          const HumanTorqueObserverConfiguration& configuration)
-    : model_(withGentleFriction(robot)),
+    : model_(withGentleFriction(arm.robot)),
       configuration_((validate(configuration), configuration)),
-      at_link_(configuration.effort.side == "link"),
+      shows_drives_(configuration.effort.side == arm.drives_side),
+      bias_(shows_drives_ ? arm.torque_bias : Eigen::VectorXd::Zero(model_.size())),
       motion_filter_(model_.size(), configuration.cutoff),
       torque_filter_(model_.size(), configuration.cutoff),
       observer_(model_.size(), configuration.gain) {
@@ -77,7 +78,7 @@ bool HumanTorqueObserver::takeMotorTorque(const Eigen::VectorXd& q, const Eigen:
   for (Eigen::Index i = 0; i < effort.size(); ++i) {
     const bool unsaid = std::isnan(effort[i]) && configuration_.gravity_compensated;
     motor_torque_[i] =
-        (unsaid ? 0.0 : effort[i]) + (unsaid || !configuration_.effort.includes_gravity ? gravity_[i] : 0.0);
+        (unsaid ? 0.0 : effort[i] - bias_[i]) + (unsaid || !configuration_.effort.includes_gravity ? gravity_[i] : 0.0);
   }
   return motor_torque_.allFinite();
 }
@@ -103,7 +104,7 @@ bool HumanTorqueObserver::findMomentumAndForces() {
   if (!found) return false;
   momentum_.noalias() = mass_ * dq_;
   forces_ = -gravity_ - work_;
-  if (!at_link_) {
+  if (shows_drives_) {
     forces_ -= friction_;
     for (Eigen::Index i = 0; i < momentum_.size(); ++i) {
       momentum_[i] += model_.description().joints[static_cast<std::size_t>(i)].motor_inertia * dq_[i];

@@ -20,6 +20,15 @@ BodyInertia CalibratedBody::body() const {
   return result;
 }
 
+CalibratedArm calibrate(const RobotDescription& robot, const std::filesystem::path& file) {
+  if (file.empty()) return calibrate(robot, ModelCalibration());
+  try {
+    return calibrate(robot, readModelCalibration(file));
+  } catch (const ModelError& error) {
+    throw FileError(file.string() + ": " + error.what());
+  }
+}
+
 CalibratedArm calibrate(const RobotDescription& robot, const ModelCalibration& calibration) {
   if (!calibration.tip.empty() && calibration.payload && calibration.tip != robot.tip) {
     throw ModelError("the model has a payload at tip '" + calibration.tip + "', but the tip of the arm is '" +

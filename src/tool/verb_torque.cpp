@@ -44,19 +44,9 @@ std::string stepOf(const Options& options) {
   return step + " --max-gap " + print(options.max_gap);
 }
 
-/// What was found of a file, with its name in front.
-CalibratedArm calibratedBy(const std::string& model, const RobotDescription& arm) {
-  if (model.empty()) return calibrate(arm, {});
-  try {
-    return calibrate(arm, readModelCalibration(model));
-  } catch (const ModelError& error) {
-    throw FileError(model + ": " + error.what());
-  }
-}
-
 ConversionReport addTorques(const RobotDescription& description, LoadedDemonstration& recording,
                             const Options& options) {
-  const CalibratedArm arm = calibratedBy(options.model, description);
+  const CalibratedArm arm = calibrate(description, std::filesystem::path(options.model));
   HumanTorqueOptions torque;
   torque.effort = meaningOf(recording.demonstration.metadata.effort, options);
   torque.gravity_compensated = options.gravity_compensated;

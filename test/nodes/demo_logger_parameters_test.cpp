@@ -151,8 +151,8 @@ TEST(DemoLoggerParametersTest, HumanTorqueIsAFlagOrAGroupAndAsksForTheWholeChain
   flag["human_torque"] = true;
   const DemoLoggerParameters plain = parse(flag, twoLinkUrdf());
   ASSERT_TRUE(plain.human_torque.has_value());
-  EXPECT_EQ(plain.human_torque->gain, 50.0);
-  EXPECT_EQ(plain.human_torque->cutoff, 30.0);
+  EXPECT_EQ(plain.human_torque->observer.gain, 50.0);
+  EXPECT_EQ(plain.human_torque->observer.cutoff, 30.0);
   EXPECT_EQ(plain.robot->tip, "tool_tip");
 
   XmlRpcValue group;
@@ -163,9 +163,9 @@ TEST(DemoLoggerParametersTest, HumanTorqueIsAFlagOrAGroupAndAsksForTheWholeChain
   group["streams"][0]["name"] = "ft";
   group["effort"]["side"] = "link";
   const DemoLoggerParameters detailed = parse(group, twoLinkUrdf());
-  EXPECT_EQ(detailed.human_torque->gain, 100.0);
-  EXPECT_TRUE(detailed.human_torque->gravity_compensated);
-  EXPECT_EQ(detailed.human_torque->effort.side, "link");
+  EXPECT_EQ(detailed.human_torque->observer.gain, 100.0);
+  EXPECT_TRUE(detailed.human_torque->observer.gravity_compensated);
+  EXPECT_EQ(detailed.human_torque->observer.effort.side, "link");
   EXPECT_EQ(detailed.wrench->arm_to_sensor.jointNames(), std::vector<std::string>{"joint_1"});
   EXPECT_EQ(detailed.recorder.synchroniser.streams[1].type, StreamType::wrench) << "its columns are always there";
 
@@ -195,6 +195,9 @@ TEST(DemoLoggerParametersTest, WhatHumanTorqueCannotDoWithoutIsNamed) {
                 },
                 twoLinkUrdf())
                 .rfind("/demo_logger/human_torque/wrench_link: ", 0),
+            0U);
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"]["model"] = "/no/such.yaml"; }, twoLinkUrdf())
+                .rfind("/no/such.yaml", 0),
             0U);
   EXPECT_EQ(refusal(
                 [](XmlRpcValue& values) {

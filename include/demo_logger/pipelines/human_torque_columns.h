@@ -14,7 +14,7 @@ namespace demo_logger {
 /// by HumanTorqueObserver, late by its delay(). NaN where it knows nothing; why, where that lasts, is a fault.
 class HumanTorqueColumns : public DerivedColumns {
  public:
-  HumanTorqueColumns(const RobotDescription& robot, const HumanTorqueObserverConfiguration& configuration);
+  HumanTorqueColumns(const CalibratedArm& arm, const HumanTorqueObserverConfiguration& configuration);
   ~HumanTorqueColumns() override;
 
   /// A chain whose joints are not all recorded gets no columns, and a fault names the first.

@@ -7,6 +7,7 @@
 #include "demo_logger/channels/low_pass.h"
 #include "demo_logger/channels/momentum_observer.h"
 #include "demo_logger/channels/velocity_filter.h"
+#include "demo_logger/pipelines/model_calibration.h"
 #include "demo_logger/robot/robot_model.h"
 #include "demo_logger/trajectory/metadata.h"
 #include "demo_logger/trajectory/stamp.h"
@@ -28,7 +29,8 @@ void validate(const HumanTorqueObserverConfiguration& configuration);
 /// with p = M(q) q̇ and u = Cᵀ q̇ − g − friction, q̇ from positions by the velocity filter (measured velocities are not
 /// asked for: how they were filtered is not known). Positions and motor torques pass the same filter, so that
 /// everything the observer weighs against each other is late alike. In hindsight addHumanTorque knows better.
-///   side motor: motor inertia and friction of the drives belong to the arm; side link: to neither.
+///   side motor: motor inertia and friction of the drives belong to the arm; side link: they do not, unless the arm's
+///               calibration was made with such efforts. Its torque bias is taken off them alike.
 ///   held:       an effort acts from its stamp on, for the control period; where the log is slower than the controller,
 ///               the torque between two stamps is that of the straight line through (stamp + half a control period)
 ///   instant:    the same with a control period of zero, the trapezium
@@ -41,7 +43,7 @@ class HumanTorqueObserver {
   static constexpr double kFrictionVelocity = 0.01;  // [rad/s or m/s]
 
   /// Throws ConfigurationError, or ModelError for an arm without inertia.
-  HumanTorqueObserver(const RobotDescription& robot, const HumanTorqueObserverConfiguration& configuration);
+  HumanTorqueObserver(const CalibratedArm& arm, const HumanTorqueObserverConfiguration& configuration);
 
   /// Forgets everything.
   void restart();
@@ -63,7 +65,8 @@ class HumanTorqueObserver {
 
   RobotModel model_;
   const HumanTorqueObserverConfiguration configuration_;
-  const bool at_link_;
+  const bool shows_drives_;  // the efforts have friction, motor inertia and bias of the drives in them
+  const Eigen::VectorXd bias_;
   VelocityFilter motion_filter_;
   LowPass torque_filter_;
   MomentumObserver observer_;

@@ -66,5 +66,7 @@ struct CalibratedArm {
 /// Bodies and payload by withBodies and withPayload, drives by withDrives; of an empty calibration the description as
 /// it is. Throws ModelError for joints that are not the arm's, another tip, or masses that leave no possible body.
 CalibratedArm calibrate(const RobotDescription& robot, const ModelCalibration& calibration);
+/// The same by a file; without one (an empty path) as the URDF has it. Throws FileError, which names the file.
+CalibratedArm calibrate(const RobotDescription& robot, const std::filesystem::path& file);
 
 }  // namespace demo_logger
