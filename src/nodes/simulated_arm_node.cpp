@@ -76,7 +76,8 @@ SimulatedArmNode::SimulatedArmNode(ros::NodeHandle node, ros::NodeHandle private
 
   subscribers_.push_back(node.subscribe<geometry_msgs::WrenchStamped>(
       "human_wrench", kQueue,
-      boost::function<void(const WrenchEvent&)>([this](const WrenchEvent& e) { receiveWrench(e); })));
+      boost::function<void(const WrenchEvent&)>([this](const WrenchEvent& e) { receiveWrench(e); }),
+      ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
 
   advertiseServices(private_node);
   startDiagnostics(node);

@@ -1,14 +1,15 @@
-// simulated_human_node: sees the true arm, moves a joystick. ground_truth/joint_states → joy. Ends with its task.
+// simulated_human_node: sees the true arm, and moves a joystick or guides the tool, as its task is. Ends with it.
+//   ground_truth/joint_states → joy, human_wrench
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/Joy.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "demo_logger/robot/robot_model.h"
 #include "demo_logger/simulation/simulated_human.h"
+#include "src/nodes/seen_arm.h"
+#include "src/nodes/simulated_hand_node.h"
 #include "src/nodes/teleop_parameters.h"
 #include "src/ros/node_main.h"
 
@@ -26,10 +27,8 @@ struct SimulatedHumanParameters {
   RobotDescription robot;
 };
 
-SimulatedHumanParameters readSimulatedHumanParameters(const ros::NodeHandle& private_node) {
-  Parameters parameters = readParameters(private_node);
+SimulatedHumanParameters readSimulatedHumanParameters(Parameters& parameters, const ros::NodeHandle& private_node) {
   SimulatedHumanParameters result;
-  parameters.choice("task", "teleoperation", {"teleoperation"});
   DescriptionOptions chain;
   chain.base = parameters.text("base", "");
   chain.tip = parameters.text("tip", "");
@@ -54,7 +53,7 @@ SimulatedHumanParameters readSimulatedHumanParameters(const ros::NodeHandle& pri
 class SimulatedHumanNode {
  public:
   SimulatedHumanNode(ros::NodeHandle node, const SimulatedHumanParameters& parameters)
-      : model_(parameters.robot),
+      : arm_(parameters.robot),
         human_(parameters.human),
         listeners_(parameters.listeners),
         period_(fromSeconds(parameters.human.reading_period)) {
@@ -73,32 +72,17 @@ class SimulatedHumanNode {
   void see(const sensor_msgs::JointState& state) {
     const auto now = static_cast<Nanoseconds>(state.header.stamp.toNSec());
     if (next_reading_ ? now < *next_reading_ : joy_.getNumSubscribers() < listeners_) return;
-    const std::optional<Eigen::VectorXd> q = positions(state);
-    if (!q) {
-      ROS_ERROR_STREAM_THROTTLE(kPatience, truth_.getTopic() << " lacks positions of " << model_.description().name
-                                                             << ", expected all from " << model_.description().base
-                                                             << " to " << model_.description().tip << ".");
+    const std::optional<ArmState> arm = arm_.read(state, /*with_velocities=*/false);
+    if (!arm) {
+      ROS_ERROR_STREAM_THROTTLE(kPatience, arm_.complaint(truth_.getTopic(), false));
       return;
     }
     next_reading_ = next_reading_ ? *next_reading_ + period_ : now + period_;
-    publish(human_.next(now, model_.forwardKinematics(*q)), state.header.stamp);
+    publish(human_.next(now, arm_.model().forwardKinematics(arm->q)), state.header.stamp);
     if (human_.finished()) {
       ROS_INFO("the task is done.");
       ros::requestShutdown();
     }
-  }
-
-  std::optional<Eigen::VectorXd> positions(const sensor_msgs::JointState& state) const {
-    Eigen::VectorXd q(model_.size());
-    for (int i = 0; i < model_.size(); ++i) {
-      const std::string& name = model_.description().joints[static_cast<std::size_t>(i)].name;
-      const auto found = std::find(state.name.begin(), state.name.end(), name);
-      const auto index = static_cast<std::size_t>(found - state.name.begin());
-      if (found == state.name.end() || index >= state.position.size()) return std::nullopt;
-      if (!std::isfinite(state.position[index])) return std::nullopt;
-      q[i] = state.position[index];
-    }
-    return q;
   }
 
   void publish(const DeviceReading& reading, const ros::Time& stamp) {
@@ -109,7 +93,7 @@ class SimulatedHumanNode {
     joy_.publish(joy);
   }
 
-  RobotModel model_;
+  SeenArm arm_;
   SimulatedHuman human_;
   std::uint32_t listeners_;
   Nanoseconds period_;
@@ -124,8 +108,20 @@ class SimulatedHumanNode {
 
 int main(int argc, char** argv) {
   return demo_logger::runNode(argc, argv, "simulated_human", [] {
-    demo_logger::SimulatedHumanNode human(ros::NodeHandle(),
-                                          demo_logger::readSimulatedHumanParameters(ros::NodeHandle("~")));
-    ros::spin();
+    const ros::NodeHandle private_node("~");
+    demo_logger::Parameters parameters = demo_logger::readParameters(private_node);
+    const std::string teleoperation = "teleoperation";
+    std::vector<std::string> tasks = demo_logger::handTaskNames();
+    tasks.insert(tasks.begin(), teleoperation);
+    const std::string task = parameters.choice("task", teleoperation, tasks);
+    if (task == teleoperation) {
+      demo_logger::SimulatedHumanNode human(ros::NodeHandle(),
+                                            demo_logger::readSimulatedHumanParameters(parameters, private_node));
+      ros::spin();
+      return;
+    }
+    demo_logger::SimulatedHandNode hand(ros::NodeHandle(),
+                                        demo_logger::readSimulatedHandParameters(parameters, private_node, task));
+    hand.run();
   });
 }

@@ -19,9 +19,6 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586;
 constexpr double kVisualGain = 2.0;       // [1/s] k
 constexpr double kTremorFrequency = 9.0;  // [Hz] physiological tremor lies between 8 and 12
-constexpr double kPlaceScatter = 0.01;    // [m]
-constexpr double kTurnScatter = 0.05;     // [rad]
-constexpr double kTempoScatter = 0.1;     // of a duration
 constexpr double kAxisSteps = 512.0;      // from 0 to 1
 // The course of a task [s].
 constexpr double kStartPressed = 0.1;
@@ -57,16 +54,6 @@ void validate(const SimulatedHumanConfiguration& human) {
   }
 }
 
-std::vector<Waypoint> drawTask(const SimulatedHumanConfiguration& human, GaussianNoise& random) {
-  std::vector<Waypoint> task = human.task.empty() ? teleoperationTask() : human.task;
-  for (Waypoint& waypoint : task) {
-    for (double& shift : waypoint.shift) shift += random.uniform(-kPlaceScatter, kPlaceScatter);
-    for (double& turn : waypoint.turn) turn += random.uniform(-kTurnScatter, kTurnScatter);
-    waypoint.duration *= 1.0 + random.uniform(-kTempoScatter, kTempoScatter);
-  }
-  return task;
-}
-
 }  // namespace
 
 std::vector<Waypoint> teleoperationTask() {
@@ -80,7 +67,7 @@ class SimulatedHuman::Implementation {
   explicit Implementation(SimulatedHumanConfiguration configuration)
       : human_(std::move(configuration)), map_(human_.device.map), random_(human_.seed) {
     validate(human_);
-    task_ = drawTask(human_, random_);
+    task_ = scattered(human_.task.empty() ? teleoperationTask() : human_.task, random_);
     axes_from_twist_ = human_.device.map.gain.completeOrthogonalDecomposition().pseudoInverse();
     inputs_ = Eigen::VectorXd::Zero(map_.inputs());
     tremor_phase_ = Eigen::VectorXd(map_.inputs());

@@ -126,6 +126,30 @@ TEST_F(NodeStartTest, TheArmFollowsNoOtherClockThanItsOwn) {
                 "simulated arm follows no other simulation's clock.");
 }
 
+TEST_F(NodeStartTest, AHandThatCouldNotHoldTheArmIsRefused) {
+  expectRefusal(start("simulated_human_node", "task", std::string("juggle")),
+                "simulated_human: /started/task is \"juggle\", expected one of teleoperation, reach, arc, peg.");
+  ros::NodeHandle().setParam("started/task", "reach");
+  ros::NodeHandle().setParam("started/damping", 2.0);
+  expectRefusal(
+      startAs("started", "simulated_human_node"),
+      "simulated_human: simulated hand: damping is 2 N s/m, expected from 5 to 1000 N s/m with a stiffness of "
+      "500, or a hand that sees the arm 10 ms late would swing up.");
+}
+
+TEST_F(NodeStartTest, AnImpedanceThatCouldNotBeHeldIsRefused) {
+  ros::NodeHandle().deleteParam("started");
+  ros::NodeHandle().setParam("started/impedance/damping", std::vector<double>{1e4});
+  const Ended ended = startAs("started", "simulated_arm_node");
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_EQ(ended.output.rfind("simulated_arm: impedance: damping of ", 0), 0U) << ended.output;
+  ros::NodeHandle().setParam("started/impedance/damping", std::vector<double>{-1.0});
+  expectRefusal(
+      startAs("started", "simulated_arm_node"),
+      "simulated_arm: /started/impedance/damping[0] is -1 N m s/rad or N s/m, expected a number of at least 0 "
+      "N m s/rad or N s/m.");
+}
+
 TEST_F(NodeStartTest, ADeviceWithoutAxesIsRefused) {
   expectRefusal(start("teleop_node", "dead_zone", 0.1, /*without_axis=*/true),
                 "teleop: /started/axis_linear and axis_angular name no axis of the device, expected at least one "

@@ -33,16 +33,28 @@ TEST(WaypointPathTest, IsHalfWayAtHalfTimeWithThePeakVelocityOfMinimumJerk) {
   EXPECT_NEAR(middle.twist[5], 15.0 / 8.0 * 0.5 / 2.0, 1e-12);
 }
 
+TEST(WaypointPathTest, WithAnOverlapOneMovementRunsIntoTheNext) {
+  const WaypointPath path(makeStart(), {kAside, kDown}, 0.5);
+  EXPECT_DOUBLE_EQ(path.duration(), 2.0) << "the second begins half-way through the first";
+  EXPECT_TRUE(path.at(1.0).pose.isApprox(WaypointPath(makeStart(), {kAside}).at(1.0).pose));
+  const ToolPoint both = path.at(1.5);
+  EXPECT_GT(both.twist[1], 0.01) << "aside and down at once";
+  EXPECT_LT(both.twist[2], -0.01);
+  EXPECT_TRUE(path.at(2.0).pose.isApprox(WaypointPath(makeStart(), {kAside, kDown}).at(3.0).pose));
+}
+
 TEST(WaypointPathTest, ItsTwistIsTheDerivativeOfItsPose) {
-  const WaypointPath path(makeStart(), {kAside, kDown});
-  const double step = 1e-6;
-  for (double time = 0.05; time < 3.0; time += 0.1) {
-    const ToolPoint before = path.at(time - step);
-    const ToolPoint after = path.at(time + step);
-    Eigen::Matrix<double, 6, 1> derivative;
-    derivative << (after.pose.translation() - before.pose.translation()) / (2.0 * step),
-        rotationVector(after.pose.linear() * before.pose.linear().transpose()) / (2.0 * step);
-    EXPECT_TRUE((path.at(time).twist - derivative).isZero(1e-6)) << "at " << time << " s";
+  for (const double overlap : {0.0, 0.6}) {
+    const WaypointPath path(makeStart(), {kAside, kDown}, overlap);
+    const double step = 1e-6;
+    for (double time = 0.05; time < 3.0; time += 0.1) {
+      const ToolPoint before = path.at(time - step);
+      const ToolPoint after = path.at(time + step);
+      Eigen::Matrix<double, 6, 1> derivative;
+      derivative << (after.pose.translation() - before.pose.translation()) / (2.0 * step),
+          rotationVector(after.pose.linear() * before.pose.linear().transpose()) / (2.0 * step);
+      EXPECT_TRUE((path.at(time).twist - derivative).isZero(1e-6)) << "at " << time << " s";
+    }
   }
 }
 
