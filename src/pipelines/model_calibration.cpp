@@ -20,6 +20,17 @@ BodyInertia CalibratedBody::body() const {
   return result;
 }
 
+CalibratedBody calibratedBody(const BodyInertia& body) {
+  CalibratedBody result;
+  result.mass.value = body.mass;
+  for (Eigen::Index i = 0; i < 3; ++i) result.center[static_cast<std::size_t>(i)].value = body.center[i];
+  std::size_t entry = 0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = i; j < 3; ++j) result.inertia[entry++].value = body.inertia(i, j);
+  }
+  return result;
+}
+
 CalibratedArm calibrate(const RobotDescription& robot, const std::filesystem::path& file) {
   if (file.empty()) return calibrate(robot, ModelCalibration());
   try {

@@ -58,22 +58,30 @@ void addConversionOptions(CLI::App& verb, ConversionOptions& options, const std:
   verb.add_flag("--json", options.json, "print one JSON object instead");
 }
 
-int convertRecordings(const ConversionOptions& options, const std::string& step,
-                      const std::function<ConversionReport(const RobotDescription&, LoadedDemonstration&)>& convert) {
+int convertRecordings(const ConversionOptions& options, const Conversion& conversion) {
   const RobotDescription arm = describeRobot(options.robot);
   const std::vector<InputAndOutput> plan = planOutputs(options.inputs, options.output, options.force);
   if (!options.force) refuseSidecarsThatAreThere(plan);
   std::vector<LoadedDemonstration> recordings(plan.size());
   std::vector<ConversionReport> reports(plan.size());
-  runJobs(plan.size(), options.jobs, [&](std::size_t i) {
-    recordings[i] = readDemonstration(plan[i].input);
+  runJobs(plan.size(), options.jobs, [&](std::size_t i) { recordings[i] = readDemonstration(plan[i].input); });
+  if (conversion.prepare) {
     try {
-      reports[i] = convert(arm, recordings[i]);
+      if (const auto exit_code = conversion.prepare(arm, recordings)) return *exit_code;
+    } catch (const ConfigurationError& error) {
+      throw FileError((plan.size() == 1 ? plan.front().input.string() + ": " : std::string()) + error.what());
+    }
+  }
+  runJobs(plan.size(), options.jobs, [&](std::size_t i) {
+    try {
+      reports[i] = conversion.convert(arm, recordings[i]);
     } catch (const ConfigurationError& error) {
       throw FileError(plan[i].input.string() + ": " + error.what());
     }
-    noteOrigin(plan[i].input, arm, describeStep(step, arm, options), recordings[i].demonstration.metadata);
+    noteOrigin(plan[i].input, arm, describeStep(conversion.step, arm, options), recordings[i].demonstration.metadata);
   });
+  ordered_json report;
+  if (conversion.conclude) conversion.conclude(report);
   makeDirectories(plan);
   int exit_code = kDone;
   ordered_json list = ordered_json::array();
@@ -92,7 +100,8 @@ int convertRecordings(const ConversionOptions& options, const std::string& step,
     for (const std::string& note : recordings[i].notes) std::cout << "note: " << note << '\n';
     std::cout << output << ": " << demonstration.time.size() << " rows " << reports[i].sentence << '\n';
   }
-  if (options.json) std::cout << ordered_json{{"recordings", list}}.dump(2) << '\n';
+  report["recordings"] = std::move(list);
+  if (options.json) std::cout << report.dump(2) << '\n';
   return exit_code;
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,18 @@ struct ConversionReport {
 /// Declares IN, -o, the robot's options, --jobs, --force, --json.
 void addConversionOptions(CLI::App& verb, ConversionOptions& options, const std::string& inputs);
 
-/// Converts all inputs, in parallel, and writes only when all have succeeded. `step` with the robot's options goes into
-/// the provenance. `convert` works on the recording, may add to its notes, and throws ConfigurationError, which gets
-/// the file's name in front. Returns the exit code.
-int convertRecordings(const ConversionOptions& options, const std::string& step,
-                      const std::function<ConversionReport(const RobotDescription&, LoadedDemonstration&)>& convert);
+/// What is to be done with each recording, and, if given, with all of them.
+struct Conversion {
+  std::string step;  // of the provenance, to which the robot's options are added
+  /// Once, with all recordings read and none converted. An exit code ends it all there: nothing is written.
+  std::function<std::optional<int>(const RobotDescription&, const std::vector<LoadedDemonstration>&)> prepare;
+  /// Works on the recording, may add to its notes, and throws ConfigurationError, which gets the file's name in front.
+  std::function<ConversionReport(const RobotDescription&, LoadedDemonstration&)> convert;
+  /// Once, when all are converted and before any is written; may add to the JSON object beside `recordings`.
+  std::function<void(nlohmann::ordered_json&)> conclude;
+};
+
+/// Converts all inputs, in parallel, and writes only when all have succeeded. Returns the exit code.
+int convertRecordings(const ConversionOptions& options, const Conversion& conversion);
 
 }  // namespace demo_logger

@@ -14,13 +14,15 @@ void addKinematicsVerb(CLI::App& tool, int& exit_code) {
       "Example: demo_tool kinematics demos/demo_000001.csv -o with_pose.csv --urdf arm.urdf --tip tool0\n"
       "Adds ee_x ee_y ee_z [m], ee_qx ee_qy ee_qz ee_qw in the base frame; such columns that are there are replaced.");
   verb->callback([options, &exit_code] {
-    exit_code =
-        convertRecordings(*options, "kinematics", [](const RobotDescription& arm, LoadedDemonstration& recording) {
-          addToolPose(arm, recording.demonstration);
-          ConversionReport report;
-          report.sentence = "with the pose of " + arm.tip + " in " + arm.base;
-          return report;
-        });
+    Conversion conversion;
+    conversion.step = "kinematics";
+    conversion.convert = [](const RobotDescription& arm, LoadedDemonstration& recording) {
+      addToolPose(arm, recording.demonstration);
+      ConversionReport report;
+      report.sentence = "with the pose of " + arm.tip + " in " + arm.base;
+      return report;
+    };
+    exit_code = convertRecordings(*options, conversion);
   });
 }
 

@@ -1,15 +1,13 @@
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "demo_logger/pipelines/human_torque.h"
-#include "demo_logger/pipelines/model_calibration.h"
-#include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
 #include "src/tool/recording_conversion.h"
+#include "src/tool/torque_fit.h"
 #include "src/tool/verbs.h"
 
 namespace demo_logger {
@@ -21,7 +19,7 @@ struct Options {
   std::string side;
   std::optional<double> control_period;
   bool gravity_compensated = false;
-  std::string model;
+  TorqueFitOptions fit;
   double max_gap = HumanTorqueOptions().max_gap;
 };
 
@@ -40,13 +38,10 @@ std::string stepOf(const Options& options) {
   if (!options.side.empty()) step += " --side " + options.side;
   if (options.control_period) step += " --control-period " + print(*options.control_period);
   if (options.gravity_compensated) step += " --gravity-compensated";
-  if (!options.model.empty()) step += " --model " + std::filesystem::path(options.model).filename().string();
-  return step + " --max-gap " + print(options.max_gap);
+  return step + stepOf(options.fit) + " --max-gap " + print(options.max_gap);
 }
 
-ConversionReport addTorques(const RobotDescription& description, LoadedDemonstration& recording,
-                            const Options& options) {
-  const CalibratedArm arm = calibrate(description, std::filesystem::path(options.model));
+ConversionReport addTorques(const CalibratedArm& arm, LoadedDemonstration& recording, const Options& options) {
   HumanTorqueOptions torque;
   torque.effort = meaningOf(recording.demonstration.metadata.effort, options);
   torque.gravity_compensated = options.gravity_compensated;
@@ -60,13 +55,31 @@ ConversionReport addTorques(const RobotDescription& description, LoadedDemonstra
   const auto largest = std::max_element(summary.largest_torque.begin(), summary.largest_torque.end());
   report.sentence = "with the human's torque in " + std::to_string(summary.rows) + " of them, at most " +
                     print(*largest) + " at " +
-                    description.jointNames()[static_cast<std::size_t>(largest - summary.largest_torque.begin())];
+                    arm.robot.jointNames()[static_cast<std::size_t>(largest - summary.largest_torque.begin())];
   report.figures = [summary](nlohmann::ordered_json& object) {
     object["rows_with_torque"] = summary.rows;
     object["encoder_noise"] = summary.encoder_noise;
     object["largest_torque"] = summary.largest_torque;
   };
   return report;
+}
+
+int recoverTorques(const Options& options) {
+  TorqueModel model(options.fit, options.conversion.force, options.conversion.json);
+  Conversion conversion;
+  conversion.step = stepOf(options);
+  conversion.prepare = [&](const RobotDescription& arm, const std::vector<LoadedDemonstration>& recordings) {
+    FitOptions fit;
+    fit.max_gap = options.max_gap;
+    const bool is_told = !options.effort.empty() || !options.side.empty() || options.control_period;
+    if (is_told) fit.effort = meaningOf(recordings.front().demonstration.metadata.effort, options);
+    return model.prepare(arm, recordings, fit);
+  };
+  conversion.convert = [&](const RobotDescription&, LoadedDemonstration& recording) {
+    return addTorques(model.arm(), recording, options);
+  };
+  conversion.conclude = [&](nlohmann::ordered_json& report) { model.conclude(report); };
+  return convertRecordings(options.conversion, conversion);
 }
 
 }  // namespace
@@ -88,8 +101,7 @@ void addTorqueVerb(CLI::App& tool, int& exit_code) {
       ->check(CLI::PositiveNumber);
   verb->add_flag("--gravity-compensated", options->gravity_compensated,
                  "the arm was compensated for gravity alone; efforts are not needed");
-  verb->add_option("--model", options->model,
-                   "what was found of the arm beyond its URDF: payload, torque bias, friction (YAML)");
+  addTorqueFitOptions(*verb, options->fit);
   verb->add_option("--max-gap", options->max_gap, "[s] nothing is concluded across a longer silence")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
@@ -97,13 +109,13 @@ void addTorqueVerb(CLI::App& tool, int& exit_code) {
       "Example: demo_tool torque demos/demo_000001.csv -o taught.csv --urdf arm.urdf --base base_link --tip tool0\n"
       "Adds tau_h_<joint> with tau_h_std_<joint>, the smoothed dq_<joint> and ddq_<joint>, and the force at the tool\n"
       "tool_fx … tool_tz in base axes with tool_condition; such columns that are there are replaced.\n"
-      "Exit code: 1 if a row got no torque.");
-  verb->callback([options, &exit_code] {
-    exit_code = convertRecordings(options->conversion, stepOf(*options),
-                                  [&](const RobotDescription& arm, LoadedDemonstration& recording) {
-                                    return addTorques(arm, recording, *options);
-                                  });
-  });
+      "With --fit, the model is found from what one payload, bias and friction explain; where none explains enough, "
+      "say\n"
+      "where no hand is: demo_tool torque demos/demo_000001.csv -o taught.csv --fit arm.yaml --hand-free 0:6 --urdf …\n"
+      "Recorded velocities are not needed: they follow from positions. Nothing is concluded across silences, nor from\n"
+      "fewer than 8 rows: NaN. Missing efforts are refused, unless the arm was --gravity-compensated.\n"
+      "Exit code: 1 if a row got no torque, or a model could not be fitted (then nothing is written).");
+  verb->callback([options, &exit_code] { exit_code = recoverTorques(*options); });
 }
 
 }  // namespace demo_logger

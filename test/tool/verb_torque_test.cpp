@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "demo_logger/pipelines/model_calibration.h"
+#include "demo_logger/robot/robot_model.h"
 #include "test/tool/tool_run.h"
 
 namespace demo_logger {
@@ -86,6 +89,66 @@ TEST(VerbTorqueTest, AModelFileTakesItsBiasOffTheEfforts) {
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_EQ(refused.err.rfind("other.yaml: no joint 'joint_9' to drive in the arm of robot", 0), 0U) << refused.err;
   EXPECT_FALSE(run.exists("none.csv"));
+}
+
+/// The planar arm swings its links by itself; what its motors need of it beyond the URDF is a bias. With a hand,
+/// pushes of all sizes are added.
+std::string swinging(double seconds, double bias, double hand) {
+  const RobotModel model(
+      describeRobotFile(DEMO_LOGGER_SOURCE_DIR "/urdf/two_link.urdf", {"base_link", "tool_tip", {}, 9.81}));
+  std::string csv = "time,q_joint_1,q_joint_2,tau_joint_1,tau_joint_2\n";
+  for (double t = 0.0; t < seconds; t += 0.01) {
+    Eigen::VectorXd q(2), dq(2), ddq(2);
+    q << 0.8 * std::sin(1.5 * t), 0.7 * std::sin(2.3 * t);
+    dq << 1.2 * std::cos(1.5 * t), 1.61 * std::cos(2.3 * t);
+    ddq << -1.8 * std::sin(1.5 * t), -3.703 * std::sin(2.3 * t);
+    const Eigen::VectorXd torque = model.inverseDynamics(q, dq, ddq);
+    const double push = hand * (std::sin(5.0 * t) + 0.7 * std::sin(11.0 * t) + 0.3 * std::sin(50.0 * t));
+    csv += std::to_string(t) + "," + std::to_string(q[0]) + "," + std::to_string(q[1]) + "," +
+           std::to_string(torque[0] + bias + push) + "," + std::to_string(torque[1] + 0.5 * push) + "\n";
+  }
+  return csv;
+}
+
+TEST(VerbTorqueTest, AFitWritesTheModelAndGoesByIt) {
+  const ToolRun run;
+  run.write("free.csv", swinging(10.0, 0.4, 0.0));
+  const std::string how = " --side link --effort instant" + kTwoLink;
+  const auto outcome = run("torque free.csv -o out.csv --fit arm.yaml" + how);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("arm.yaml: fitted to "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("  joint_1: torque bias 0.4"), std::string::npos) << outcome.out;
+  const ModelCalibration model = readModelCalibration(run.path("arm.yaml"));
+  EXPECT_NEAR(model.joints.at("joint_1").torque_bias->value, 0.4, 1e-3);
+  EXPECT_NEAR(std::stod(run.cells("out.csv")[500][9]), 0.0, 0.01) << "no hand, no torque";
+
+  EXPECT_EQ(run("torque free.csv -o again.csv --fit arm.yaml" + how).err,
+            "arm.yaml: exists already and is not overwritten; choose another name, or add --force\n");
+  EXPECT_EQ(run("torque free.csv -o again.csv --model arm.yaml" + how).exit_code, 0);
+  EXPECT_EQ(run.cells("again.csv")[500][9].substr(0, 6), run.cells("out.csv")[500][9].substr(0, 6));
+  const auto given = run("torque free.csv -o given.csv --fit given.yaml --hand-free 1:4 --hand-free 6:9 --json" + how);
+  EXPECT_EQ(given.exit_code, 0) << given.err;
+  const auto fit = nlohmann::json::parse(given.out)["fit"];
+  EXPECT_EQ(fit["hand_free"].size(), 2U);
+  EXPECT_NEAR(fit["duration"].get<double>(), 6.0, 0.03);
+  EXPECT_EQ(fit["residual"].size(), 2U);
+}
+
+TEST(VerbTorqueTest, WhereAHandIsAllTheTimeNothingIsWrittenAndTheReasonSaid) {
+  const ToolRun run;
+  run.write("held.csv", swinging(10.0, 0.0, 8.0));
+  const std::string how = " --side link --effort instant" + kTwoLink;
+  const auto outcome = run("torque held.csv -o out.csv --fit arm.yaml" + how);
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_EQ(outcome.err.rfind("arm.yaml: not fitted, nothing written: only ", 0), 0U) << outcome.err;
+  EXPECT_FALSE(run.exists("out.csv"));
+  EXPECT_FALSE(run.exists("arm.yaml"));
+  const auto json = run("torque held.csv -o out.csv --fit arm.yaml --json" + how);
+  EXPECT_TRUE(nlohmann::json::parse(json.out)["fit"]["model"].is_null()) << json.out;
+
+  EXPECT_EQ(run("torque held.csv -o out.csv --fit arm.yaml --hand-free 4:2" + how).err,
+            "--hand-free is \"4:2\", expected FROM:TO in seconds since the first row, FROM before TO\n");
+  EXPECT_EQ(run("torque held.csv -o out.csv --hand-free 2:4" + how).exit_code, 2) << "only with --fit";
 }
 
 }  // namespace

@@ -26,6 +26,9 @@ struct CalibratedBody {
   BodyInertia body() const;
 };
 
+/// As stated, without deviations.
+CalibratedBody calibratedBody(const BodyInertia& body);
+
 /// How the drive of one joint, and its torque reading, differ from the description. What is absent stays as it is
 /// there.
 struct JointCalibration {

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demo_logger/pipelines/model_calibration.h"
+#include "demo_logger/robot/robot_description.h"
+#include "demo_logger/trajectory/demonstration.h"
+
+namespace demo_logger {
+
+struct TimeSpan {
+  double from = 0.0;  // [s] since the first row
+  double to = 0.0;
+};
+
+struct FitOptions {
+  std::optional<EffortMetadata> effort;  // what the efforts mean; nothing: what the recordings' metadata says
+  double max_gap = 0.1;                  // [s] nothing is concluded across a longer silence of the joints
+  /// What is known already. A value with a deviation is where the fit starts, and holds it so firmly; one without is
+  /// known, and stays.
+  ModelCalibration start;
+  std::vector<TimeSpan> hand_free;  // where no hand touched the arm; empty: to be found
+  std::optional<bool> friction;     // to be fitted; nothing: if the efforts are those of the motors
+  /// How far the fitted model may be off where no hand is, in parts of what a joint usually bears (root mean square).
+  double model_error = 0.1;
+  double least_duration = 2.0;  // [s] without a hand, in which the arm moves, or stands without friction
+};
+
+struct FitResult {
+  std::string undetermined;  // why nothing could be fitted; empty: it could
+  ModelCalibration calibration;
+  struct Part {
+    std::size_t recording = 0;
+    TimeSpan span;
+  };
+  std::vector<Part> hand_free;         // what was used
+  double duration = 0.0;               // [s] of it
+  std::size_t rows = 0;                // that tell of at least one joint
+  std::vector<double> residual_start;  // per joint, root mean square there [N m or N], as the start has it
+  std::vector<double> residual;        // ditto, as fitted
+  std::vector<std::string> findings;   // a sentence for each quantity: what it is, or why it is not known
+};
+
+/// Finds out by how much an arm differs from its description, from recordings in which, for a while, no hand touches
+/// it: what the efforts are beyond M q̈ + C q̇ + g is then
+///   payload:  four columns, linear in its mass m and m c
+///   + torque bias + damping q̇ + friction tanh(q̇ / v)          for each joint
+/// by least squares, each quantity held to its start by a ridge of its own (a prior standard deviation in its unit:
+/// 1 kg; 0.1 kg m; of the joint's effort limit 2 % bias, 5 % friction, and 5 % damping at the velocity limit).
+/// Residuals are not independent from row to row; each joint's are counted as the variance of their means over half a
+/// second says, and so are the deviations that come with the values.
+///
+/// Where no hand is, if not told: the longest part of the recordings, in windows of a quarter of a second, that one set
+/// of values explains to within `model_error` (or five times the noise of the sensors), sought from each stretch of two
+/// seconds; then only what lies within three times the residual that is usual there. Assumed is, so, that a hand's
+/// torque does not look like a payload, a bias or friction for longer than the hand is away: it goes wrong where
+/// someone rests a steady weight on the tool for most of the recording. A joint that stands still with friction says
+/// nothing of the torque on it, and does not count.
+///
+/// Throws as addHumanTorque does.
+FitResult fitModel(const RobotDescription& robot, const std::vector<const Demonstration*>& recordings,
+                   const FitOptions& options = {});
+
+}  // namespace demo_logger

@@ -1,0 +1,115 @@
+#include "arm_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/motion_smoother.h"
+#include "demo_logger/trajectory/print.h"
+#include "effort_series.h"
+#include "joint_columns.h"
+
+namespace demo_logger {
+
+using Index = Eigen::Index;
+
+RecordedJoints readJoints(const RobotDescription& robot, const Demonstration& demonstration) {
+  const std::vector<std::string> names = robot.jointNames();
+  const Index rows = demonstration.values.rows();
+  const auto count = static_cast<Index>(names.size());
+  RecordedJoints joints{Eigen::MatrixXd(rows, count), Eigen::MatrixXd(rows, count), {}};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto position = findJointColumn(demonstration.columns, kPosition, names[i]);
+    if (!position) {
+      throw ConfigurationError("no column `" + jointColumnName(kPosition, names[i]) + "` with the position of joint '" +
+                               names[i] + "', which the torques depend on");
+    }
+    const auto column = static_cast<Index>(i);
+    joints.position.col(column) = demonstration.values.col(static_cast<Index>(*position));
+    const auto effort = findJointColumn(demonstration.columns, kEffort, names[i]);
+    if (effort) joints.effort.col(column) = demonstration.values.col(static_cast<Index>(*effort));
+    if (joints.without_effort.empty() && (!effort || joints.effort.col(column).array().isNaN().all())) {
+      joints.without_effort = names[i];
+    }
+  }
+  if (!joints.without_effort.empty()) joints.effort.resize(0, 0);
+  return joints;
+}
+
+std::vector<RowRange> rangesWithoutSilence(const std::vector<double>& time, const Eigen::MatrixXd& position,
+                                           double max_gap, std::vector<std::string>& notes) {
+  std::vector<RowRange> ranges;
+  std::vector<std::size_t> measured;  // rows in the last of them
+  std::size_t too_short = 0;
+  const auto close = [&] {
+    if (measured.size() >= static_cast<std::size_t>(kFewestSamples)) {
+      ranges.push_back({measured.front(), measured.back() + 1});
+    } else if (!measured.empty()) {
+      ++too_short;
+    }
+    measured.clear();
+  };
+  for (std::size_t k = 0; k < time.size(); ++k) {
+    if (!position.row(static_cast<Index>(k)).allFinite()) continue;
+    if (!measured.empty() && time[k] - time[measured.back()] > max_gap) close();
+    measured.push_back(k);
+  }
+  close();
+  if (ranges.size() > 1) {
+    notes.push_back("the joints were silent for more than " + print(max_gap) + " s, " +
+                    std::to_string(ranges.size() - 1 + too_short) + " times; nothing is said across that");
+  }
+  if (too_short > 0) {
+    notes.push_back(std::to_string(too_short) + " parts between silences have fewer than " +
+                    std::to_string(kFewestSamples) + " rows, too few to tell an acceleration: they stay NaN");
+  }
+  return ranges;
+}
+
+ArmMotion smoothArm(const std::vector<double>& time, const RecordedJoints& joints, const RowRange& range,
+                    const EffortMetadata& meaning, MeasuredEfforts efforts) {
+  ArmMotion motion;
+  motion.first_row = range.first;
+  motion.time.assign(time.begin() + static_cast<std::ptrdiff_t>(range.first),
+                     time.begin() + static_cast<std::ptrdiff_t>(range.last));
+  const auto first = static_cast<Index>(range.first);
+  const auto rows = static_cast<Index>(motion.time.size());
+  const Index n = joints.position.cols();
+  motion.position = motion.velocity = motion.acceleration = Eigen::MatrixXd(rows, n);
+  motion.velocity_variance = motion.acceleration_variance = Eigen::MatrixXd(rows, n);
+  if (joints.effort.size() > 0) motion.effort = motion.effort_variance = Eigen::MatrixXd(rows, n);
+  motion.noise.resize(n);
+  for (Index i = 0; i < n; ++i) {
+    const SmoothedMotion joint = smoothMotion(motion.time, joints.position.col(i).segment(first, rows));
+    motion.position.col(i) = joint.position;
+    motion.velocity.col(i) = joint.velocity;
+    motion.acceleration.col(i) = joint.acceleration;
+    for (Index k = 0; k < rows; ++k) {
+      const Eigen::Matrix3d& covariance = joint.covariance[static_cast<std::size_t>(k)];
+      motion.velocity_variance(k, i) = std::max(0.0, covariance(1, 1));
+      motion.acceleration_variance(k, i) = std::max(0.0, covariance(2, 2));
+    }
+    motion.noise[i] = joint.measurement_deviation;
+    if (joints.effort.size() == 0) continue;
+    if (efforts == MeasuredEfforts::raw && meaning.timing == "instant") {
+      motion.effort.col(i) = joints.effort.col(i).segment(first, rows);
+      motion.effort_variance.col(i).setZero();
+      continue;
+    }
+    const EffortSeries effort = torqueAtStamps(motion.time, joints.effort.col(i).segment(first, rows), meaning);
+    motion.effort.col(i) = effort.torque;
+    motion.effort_variance.col(i) = effort.variance;
+  }
+  return motion;
+}
+
+VelocitySign signOf(double velocity, double deviation, double friction_velocity) {
+  if (friction_velocity > 0.0) {
+    const double mean = std::tanh(velocity / friction_velocity);
+    return {mean, std::pow((1.0 - mean * mean) * deviation / friction_velocity, 2)};
+  }
+  const double mean = std::erf(velocity / (std::sqrt(2.0) * std::max(deviation, 1e-12)));
+  return {mean, 1.0 - mean * mean};
+}
+
+}  // namespace demo_logger

@@ -1,0 +1,181 @@
+#include "hand_free_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace demo_logger {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kWindow = 0.25;         // [s]
+constexpr std::size_t kSeedWindows = 8;  // a stretch that the search starts from
+constexpr std::size_t kMostSeeds = 60;   // spread over the recordings
+constexpr std::size_t kShortestRun = 3;  // windows; a hand that passes through its own mean is not away
+constexpr int kMostRounds = 15;
+constexpr int kTightenings = 3;
+constexpr double kUsual = 3.0;  // times the usual residual still counts as usual
+
+struct Window {
+  Index first;
+  Index last;  // rows [first, last)
+  std::size_t range;
+  std::vector<JointSums> sums;  // by joint
+};
+
+std::vector<Window> windowsOf(const TorqueEquations& equations, const TorqueRegression& regression) {
+  std::vector<Window> windows;
+  for (Index k = 0; k < regression.rows(); ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    const bool continues =
+        !windows.empty() && windows.back().range == equations.range[row] &&
+        equations.time[row] - equations.time[static_cast<std::size_t>(windows.back().first)] < kWindow;
+    if (!continues) {
+      windows.push_back(
+          {k, k, equations.range[row],
+           std::vector<JointSums>(static_cast<std::size_t>(regression.joints), JointSums(regression.inertial.cols()))});
+    }
+    Window& window = windows.back();
+    window.last = k + 1;
+    for (Index i = 0; i < regression.joints; ++i) window.sums[static_cast<std::size_t>(i)].add(regression, k, i);
+  }
+  return windows;
+}
+
+class Search {
+ public:
+  Search(const TorqueRegression& regression, std::vector<Window> windows, HandFreeTolerance tolerance,
+         const Prior& prior)
+      : regression_(regression), windows_(std::move(windows)), tolerance_(std::move(tolerance)), prior_(prior) {}
+
+  std::vector<bool> run() {
+    std::vector<bool> best(windows_.size(), false);
+    for (const std::size_t seed : seeds()) {
+      const std::vector<bool> grown = grow(seed);
+      if (said(grown) > said(best)) best = grown;
+    }
+    for (int round = 0; round < kTightenings && said(best) > 0; ++round) best = tightened(best);
+    return rowsOf(best);
+  }
+
+ private:
+  bool says(const Window& window) const {
+    return std::any_of(window.sums.begin(), window.sums.end(),
+                       [&](const JointSums& sums) { return 2.0 * sums.count >= sizeOf(window); });
+  }
+  static double sizeOf(const Window& window) { return static_cast<double>(window.last - window.first); }
+
+  std::size_t said(const std::vector<bool>& chosen) const {
+    std::size_t count = 0;
+    for (std::size_t w = 0; w < windows_.size(); ++w) count += chosen[w] && says(windows_[w]) ? 1 : 0;
+    return count;
+  }
+
+  std::vector<std::size_t> seeds() const {
+    std::vector<std::size_t> possible;
+    for (std::size_t w = 0; w + kSeedWindows <= windows_.size(); w += kSeedWindows / 4) {
+      if (windows_[w].range == windows_[w + kSeedWindows - 1].range) possible.push_back(w);
+    }
+    std::vector<std::size_t> seeds;
+    const std::size_t stride = (possible.size() + kMostSeeds - 1) / kMostSeeds;
+    for (std::size_t i = 0; i < possible.size(); i += std::max<std::size_t>(stride, 1)) seeds.push_back(possible[i]);
+    return seeds;
+  }
+
+  /// A window counts as one equation with the tolerance as its deviation.
+  Eigen::VectorXd solve(const std::vector<bool>& chosen) const {
+    std::vector<JointSums> sums(static_cast<std::size_t>(regression_.joints), JointSums(regression_.inertial.cols()));
+    double rows = 0.0;
+    double count = 0.0;
+    for (std::size_t w = 0; w < windows_.size(); ++w) {
+      if (!chosen[w]) continue;
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += windows_[w].sums[i];
+      rows += sizeOf(windows_[w]);
+      count += 1.0;
+    }
+    const Eigen::VectorXd weight = tolerance_.largest.cwiseAbs2().cwiseInverse() * (count / std::max(rows, 1.0));
+    return solveRegression(regression_, sums, weight, prior_).value;
+  }
+
+  double usualResidual(const Window& window, Index joint, const Eigen::VectorXd& theta) const {
+    const JointSums& sums = window.sums[static_cast<std::size_t>(joint)];
+    if (2.0 * sums.count < sizeOf(window)) return std::numeric_limits<double>::quiet_NaN();
+    return std::sqrt(sums.squares(regression_, joint, theta) / sums.count);
+  }
+
+  bool isExplained(const Window& window, const Eigen::VectorXd& theta) const {
+    for (Index i = 0; i < regression_.joints; ++i) {
+      if (usualResidual(window, i, theta) > tolerance_.largest[i]) return false;  // NaN says nothing against it
+    }
+    return true;
+  }
+
+  std::vector<bool> explained(const Eigen::VectorXd& theta) const {
+    std::vector<bool> chosen;
+    for (const Window& window : windows_) chosen.push_back(isExplained(window, theta));
+    for (std::size_t first = 0; first < chosen.size();) {  // no short runs
+      std::size_t last = first + 1;
+      while (last < chosen.size() && chosen[last] == chosen[first] && windows_[last].range == windows_[first].range) {
+        ++last;
+      }
+      if (last - first < kShortestRun)
+        std::fill(chosen.begin() + static_cast<std::ptrdiff_t>(first),
+                  chosen.begin() + static_cast<std::ptrdiff_t>(last), false);
+      first = last;
+    }
+    return chosen;
+  }
+
+  std::vector<bool> grow(std::size_t seed) const {
+    std::vector<bool> chosen(windows_.size(), false);
+    for (std::size_t w = seed; w < seed + kSeedWindows; ++w) chosen[w] = true;
+    for (int round = 0; round < kMostRounds; ++round) {
+      const std::vector<bool> next = explained(solve(chosen));
+      if (next == chosen || said(next) == 0) return next;
+      chosen = next;
+    }
+    return chosen;
+  }
+
+  /// What sticks out of the usual residual of the chosen windows is no longer chosen.
+  std::vector<bool> tightened(const std::vector<bool>& chosen) {
+    const Eigen::VectorXd theta = solve(chosen);
+    for (Index i = 0; i < regression_.joints; ++i) {
+      std::vector<double> residuals;
+      for (std::size_t w = 0; w < windows_.size(); ++w) {
+        const double residual = chosen[w] ? usualResidual(windows_[w], i, theta) : std::nan("");
+        if (!std::isnan(residual)) residuals.push_back(residual);
+      }
+      if (residuals.empty()) continue;
+      const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+      std::nth_element(residuals.begin(), middle, residuals.end());
+      tolerance_.largest[i] = std::min(tolerance_.largest[i], kUsual * std::max(*middle, tolerance_.noise[i]));
+    }
+    return explained(theta);
+  }
+
+  std::vector<bool> rowsOf(const std::vector<bool>& chosen) const {
+    std::vector<bool> rows(static_cast<std::size_t>(regression_.rows()), false);
+    for (std::size_t w = 0; w < windows_.size(); ++w) {
+      if (!chosen[w] || !says(windows_[w])) continue;
+      std::fill(rows.begin() + windows_[w].first, rows.begin() + windows_[w].last, true);
+    }
+    return rows;
+  }
+
+  const TorqueRegression& regression_;
+  const std::vector<Window> windows_;
+  HandFreeTolerance tolerance_;
+  const Prior& prior_;
+};
+
+}  // namespace
+
+std::vector<bool> findHandFreeRows(const TorqueEquations& equations, const TorqueRegression& regression,
+                                   const HandFreeTolerance& tolerance, const Prior& prior) {
+  return Search(regression, windowsOf(equations, regression), tolerance, prior).run();
+}
+
+}  // namespace demo_logger
