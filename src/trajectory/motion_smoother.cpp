@@ -14,7 +14,8 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr std::size_t kBlocks = 4;           // of a long record, spread over it, tell about where T lies
+constexpr std::size_t kBlocks = 8;           // of a long record, spread over it, tell where T lies
+constexpr std::size_t kCoarseBlocks = 4;     // about where
 constexpr std::size_t kBlockSamples = 2048;  // each
 constexpr double kCoarseStep = 1.6;          // between the T looked at first
 constexpr double kFineStep = 1.02;           // to which T is then determined
@@ -68,7 +69,7 @@ class TimeConstantSearch {
     const int last = static_cast<int>(std::log(longest / shortest) / std::log(kCoarseStep));
     for (int i = 0; i <= last; ++i) {
       const double T = shortest * std::pow(kCoarseStep, i);
-      const double likelihood = logLikelihood(T, /*of_blocks=*/true);
+      const double likelihood = logLikelihood(T, kCoarseBlocks);
       if (likelihood > most) {
         most = likelihood;
         best = T;
@@ -78,14 +79,14 @@ class TimeConstantSearch {
   }
 
  private:
-  double logLikelihood(double T, bool of_blocks) const {
+  double logLikelihood(double T, std::size_t blocks) const {
     RandomSnapFilter filter(time_, position_, interval_, T);
     const std::size_t count = time_.size();
-    if (!of_blocks || count <= kBlocks * kBlockSamples) {
+    if (count <= blocks * kBlockSamples) {
       filter.run(0, count);
     } else {
-      for (std::size_t block = 0; block < kBlocks; ++block) {
-        const std::size_t first = block * (count - kBlockSamples) / (kBlocks - 1);
+      for (std::size_t block = 0; block < blocks; ++block) {
+        const std::size_t first = block * (count - kBlockSamples) / (blocks - 1);
         filter.run(first, first + kBlockSamples);
       }
     }
@@ -93,28 +94,28 @@ class TimeConstantSearch {
     return std::isnan(likelihood) ? -std::numeric_limits<double>::infinity() : likelihood;
   }
 
-  /// The golden section of ln T, over the whole record.
+  /// The golden section of ln T.
   double refine(double lower, double upper) const {
     const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
     double a = std::log(lower);
     double b = std::log(upper);
     double c = b - golden * (b - a);
     double d = a + golden * (b - a);
-    double at_c = logLikelihood(std::exp(c), false);
-    double at_d = logLikelihood(std::exp(d), false);
+    double at_c = logLikelihood(std::exp(c), kBlocks);
+    double at_d = logLikelihood(std::exp(d), kBlocks);
     while (b - a > std::log(kFineStep)) {
       if (at_c >= at_d) {
         b = d;
         d = c;
         at_d = at_c;
         c = b - golden * (b - a);
-        at_c = logLikelihood(std::exp(c), false);
+        at_c = logLikelihood(std::exp(c), kBlocks);
       } else {
         a = c;
         c = d;
         at_c = at_d;
         d = a + golden * (b - a);
-        at_d = logLikelihood(std::exp(d), false);
+        at_d = logLikelihood(std::exp(d), kBlocks);
       }
     }
     return std::exp(0.5 * (a + b));

@@ -51,12 +51,20 @@ RandomSnapFilter::Matrix RandomSnapFilter::processNoise(double duration) const {
   return interval_ / T_ * d * Q;
 }
 
+const RandomSnapFilter::Step& RandomSnapFilter::step(double duration) const {
+  constexpr double kAlike = 1e-9;  // of a duration; what adding up doubles costs at most
+  if (std::abs(duration - step_.duration) > kAlike * duration) {
+    step_ = {duration, transition(duration), processNoise(duration)};
+  }
+  return step_;
+}
+
 void RandomSnapFilter::predict(Knowledge& knowledge, double duration) const {
   if (!knowledge.is_information) {
-    const Matrix F = transition(duration);
+    const auto& [unused, F, Q] = step(duration);
     const Matrix moved = F * knowledge.matrix;
     knowledge.vector = F * knowledge.vector;
-    knowledge.matrix = processNoise(duration);
+    knowledge.matrix = Q;
     knowledge.matrix.noalias() += moved * F.transpose();
     return;
   }
@@ -90,7 +98,12 @@ void RandomSnapFilter::measure(Knowledge& knowledge, double position, std::size_
 void RandomSnapFilter::addUp(double innovation, double variance) {
   ++innovations_;
   squares_ += innovation * innovation / variance;
-  logarithms_ += std::log(variance);
+  // A logarithm costs as much as a whole step; of a product of a few it costs that once.
+  product_ *= variance;
+  constexpr double kFar = 1e100;
+  if (product_ < kFar && product_ > 1.0 / kFar) return;
+  logarithms_ += std::log(product_);
+  product_ = 1.0;
 }
 
 template <typename Visit>
@@ -118,7 +131,7 @@ double RandomSnapFilter::variance() const { return squares_ / static_cast<double
 
 double RandomSnapFilter::logLikelihood() const {
   const auto n = static_cast<double>(innovations_);
-  return -0.5 * (n * std::log(2.0 * kPi * variance()) + n + logarithms_);
+  return -0.5 * (n * std::log(2.0 * kPi * variance()) + n + logarithms_ + std::log(product_));
 }
 
 SmoothedMotion RandomSnapFilter::smooth() {
@@ -165,8 +178,8 @@ SmoothedMotion RandomSnapFilter::smooth() {
       y[0] += position;
     }
     const double duration = time_[k] - time_[k - 1];
-    const Matrix F = transition(duration);
-    const Eigen::PartialPivLU<Matrix> blurred(Matrix::Identity() + Y * processNoise(duration));
+    const auto& [unused, F, Q] = step(duration);
+    const Eigen::PartialPivLU<Matrix> blurred(Matrix::Identity() + Y * Q);
     y = F.transpose() * blurred.solve(y);
     Y = symmetric(F.transpose() * blurred.solve(Y) * F);
   }

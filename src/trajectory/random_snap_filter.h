@@ -52,15 +52,25 @@ class RandomSnapFilter {
 
   Matrix transition(double duration) const;
   Matrix processNoise(double duration) const;
+  /// Both for a step, kept while steps are alike.
+  struct Step {
+    double duration = 0.0;
+    Matrix F = Matrix::Identity();
+    Matrix Q = Matrix::Zero();
+  };
+  const Step& step(double duration) const;
 
   const std::vector<double>& time_;
   const Eigen::VectorXd& position_;
   const double interval_;
   const double T_;
 
+  mutable Step step_;
+
   std::size_t innovations_ = 0;
   double squares_ = 0.0;     // Σ e² / s
-  double logarithms_ = 0.0;  // Σ ln s
+  double logarithms_ = 0.0;  // Σ ln s, but for those in the product
+  double product_ = 1.0;
 };
 
 }  // namespace demo_logger
