@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
@@ -26,7 +27,7 @@ void validate(const TeleoperationConfiguration& configuration) {
                              ", expected a button from 0, or -1 for none.");
   }
   if (!std::isfinite(configuration.timeout) || configuration.timeout <= 0.0) {
-    throw ConfigurationError("teleoperation: timeout is " + std::to_string(configuration.timeout) +
+    throw ConfigurationError("teleoperation: timeout is " + print(configuration.timeout) +
                              " s, expected a positive time.");
   }
 }

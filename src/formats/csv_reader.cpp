@@ -4,22 +4,17 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "csv_cells.h"
-#include "demo_logger/formats/csv_writer.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 #include "line_reader.h"
 
 namespace demo_logger {
 namespace {
-
-std::string shortest(double number) {
-  std::string text;
-  appendNumber(text, number);
-  return text;
-}
 
 std::string megabytes(std::size_t bytes) { return std::to_string(bytes >> 20U) + " MB"; }
 
@@ -53,6 +48,7 @@ class CsvReader::Implementation {
       return false;
     }
     row.resize(names_.size());
+    for (auto& [column, word] : words_) word.clear();
     if (!parseQuickly(text, row)) {
       parseWithCare(text, row);
     }
@@ -76,6 +72,12 @@ class CsvReader::Implementation {
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<std::string>& notes() const { return notes_; }
   std::size_t line() const { return line_; }
+
+  const std::string& word(std::size_t column) const {
+    static const std::string none;
+    const auto found = words_.find(column);
+    return found == words_.end() ? none : found->second;
+  }
 
  private:
   [[noreturn]] void fail(const std::string& sentence) const {
@@ -145,6 +147,9 @@ class CsvReader::Implementation {
 
   void checkExpectation() {
     time_ = find("time");
+    for (const std::string& name : expectation_.words) {
+      if (const auto column = find(name)) words_[*column];
+    }
     if (!time_ && expectation_.time) {
       fail("there is no column `time`, expected the seconds since the first row; found " + listed(names_) + ".");
     }
@@ -204,7 +209,7 @@ class CsvReader::Implementation {
     return true;
   }
 
-  void parseWithCare(std::string_view text, std::vector<double>& row) const {
+  void parseWithCare(std::string_view text, std::vector<double>& row) {
     const std::vector<std::string_view> cells = splitCells(text);
     const std::size_t whole = cells.size() - (cells.back().empty() ? 1 : 0);
     if (!lines_.endedWithLineFeed() && whole < names_.size()) {
@@ -223,7 +228,7 @@ class CsvReader::Implementation {
     }
   }
 
-  void parseInto(double& value, std::string_view cell, std::size_t index) const {
+  void parseInto(double& value, std::string_view cell, std::size_t index) {
     const std::string column = "column " + std::to_string(index + 1) + " (" + names_[index] + ")";
     if (cell.find('\0') != std::string_view::npos) {
       fail(column + " holds a NUL byte, expected a number. Was the power lost while the file was written?");
@@ -237,6 +242,11 @@ class CsvReader::Implementation {
         fail(column + " is " + inQuotes(cell) +
              ", expected a number within the range of a double (5e-324 to 1.8e308).");
       case CellKind::text:
+        if (const auto allowed = words_.find(index); allowed != words_.end()) {
+          allowed->second = cell;
+          value = std::numeric_limits<double>::quiet_NaN();
+          return;
+        }
         fail(column + " is " + inQuotes(cell) + ", expected a number, or NaN where the value is missing." +
              hintFor(cell));
     }
@@ -267,9 +277,9 @@ class CsvReader::Implementation {
       fail("column " + std::to_string(*time_ + 1) + " (time) is missing, expected the seconds since the first row.");
     }
     if (any_row_ && time <= last_time_) {
-      fail("time " + shortest(time) + " s " +
+      fail("time " + printExactly(time) + " s " +
            (time == last_time_ ? "is that of the row before; times must strictly increase. Was a row written twice?"
-                               : "does not follow " + shortest(last_time_) +
+                               : "does not follow " + printExactly(last_time_) +
                                      " s; times must strictly increase. Were two recordings joined?"));
     }
     last_time_ = time;
@@ -280,6 +290,7 @@ class CsvReader::Implementation {
   CsvExpectation expectation_;
   std::vector<std::string> names_;
   std::vector<std::string> notes_;
+  std::map<std::size_t, std::string> words_;  // of the columns that may have some, in the row last read
   std::optional<std::size_t> time_;
   std::size_t line_ = 0;
   double last_time_ = 0.0;
@@ -296,6 +307,7 @@ const std::vector<std::string>& CsvReader::names() const { return implementation
 std::optional<std::size_t> CsvReader::find(std::string_view name) const { return implementation_->find(name); }
 bool CsvReader::next(std::vector<double>& row) { return implementation_->next(row); }
 std::size_t CsvReader::line() const { return implementation_->line(); }
+const std::string& CsvReader::word(std::size_t column) const { return implementation_->word(column); }
 const std::vector<std::string>& CsvReader::notes() const { return implementation_->notes(); }
 
 }  // namespace demo_logger

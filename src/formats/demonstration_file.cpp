@@ -12,6 +12,7 @@
 #include "demo_logger/formats/csv_writer.h"
 #include "demo_logger/formats/sidecar.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
@@ -87,7 +88,7 @@ void checkConsistency(const std::filesystem::path& csv, const Demonstration& dem
   for (std::size_t i = 0; i < rows; ++i) {
     const double time = demonstration.time[i];
     if (!std::isfinite(time) || (i > 0 && time <= demonstration.time[i - 1])) {
-      refuse("time " + std::to_string(time) + " s of row " + std::to_string(i + 1) +
+      refuse("time " + printExactly(time) + " s of row " + std::to_string(i + 1) +
              " is not finite or does not follow the one before; times must strictly increase.");
     }
   }

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "demo_logger/trajectory/print.h"
 #include "src/ros/parameters.h"
 
 namespace demo_logger {
@@ -147,7 +148,7 @@ int ticksPerJointState(Parameters& parameters, int control_rate) {
   const double rate = parameters.number("publish_rate", 500.0, {1.0, static_cast<double>(control_rate), "Hz"});
   const double ticks = control_rate / rate;
   if (std::abs(ticks - std::round(ticks)) > 1e-9) {
-    throw ConfigurationError(parameters.fullName("publish_rate") + " is " + std::to_string(rate) +
+    throw ConfigurationError(parameters.fullName("publish_rate") + " is " + print(rate) +
                              " Hz, expected a whole part of the control rate of " + std::to_string(control_rate) +
                              " Hz, as joint states are those of control ticks.");
   }
@@ -160,7 +161,7 @@ TickClock::Configuration readClock(Parameters& parameters, const ros::NodeHandle
   clock.own_time = parameters.flag("publish_clock", false);
   clock.speed = parameters.number("real_time_factor", 1.0, {0.0, 1000.0, ""});
   if (!clock.own_time && clock.speed != 1.0) {
-    throw ConfigurationError(parameters.fullName("real_time_factor") + " is " + std::to_string(clock.speed) +
+    throw ConfigurationError(parameters.fullName("real_time_factor") + " is " + print(clock.speed) +
                              ", expected 1 unless " + parameters.fullName("publish_clock") + " is true.");
   }
   bool use_sim_time = false;

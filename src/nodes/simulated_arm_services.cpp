@@ -9,6 +9,7 @@
 #include "demo_logger/formats/atomic_file.h"
 #include "demo_logger/simulation/compliance.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 #include "src/nodes/simulated_arm_node.h"
 
 namespace demo_logger {
@@ -145,7 +146,7 @@ bool SimulatedArmNode::applyWrench(ApplyWrench::Request& request, ApplyWrench::R
     return true;
   }
   if (duration <= 0.0 || duration > kLongestPush) {
-    response.message = "duration is " + std::to_string(duration) + " s, expected above 0, at most 3600 s.";
+    response.message = "duration is " + print(duration) + " s, expected above 0, at most 3600 s.";
     return true;
   }
   const auto [wrench, why] = wrenchUpon(request.link, request.wrench.wrench, axes == request.link);

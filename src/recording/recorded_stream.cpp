@@ -174,7 +174,7 @@ void RecordedStream::checkValues(StreamSample& sample, Nanoseconds receipt) {
   if (!(std::abs(norm - 1.0) > kUnitTolerance)) return;  // of NaN, enough was said
   ledger_.count(Counter::non_unit_quaternions);
   ledger_.report(FaultKind::non_unit_quaternion, index_, receipt, [&] {
-    return title() + " sent an orientation whose quaternion has length " + std::to_string(norm) +
+    return title() + " sent an orientation whose quaternion has length " + print(norm) +
            ", expected 1; it is recorded as it came";
   });
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 #include "recorder_implementation.h"
 
 namespace demo_logger {
@@ -20,9 +21,9 @@ RecorderConfiguration validated(RecorderConfiguration configuration) {
   requireOutcome(configuration.metadata.outcome);
   const double split_gap = configuration.split_gap;
   if (!(split_gap == 0.0 || (std::isfinite(split_gap) && split_gap > configuration.synchroniser.max_wait))) {
-    throw ConfigurationError("split_gap is " + std::to_string(split_gap) +
+    throw ConfigurationError("split_gap is " + print(split_gap) +
                              " s, expected 0 (never) or more than max_wait, which is " +
-                             std::to_string(configuration.synchroniser.max_wait) + " s.");
+                             print(configuration.synchroniser.max_wait) + " s.");
   }
   return configuration;
 }

@@ -6,6 +6,7 @@
 
 #include "arm_kinematics.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 #include "joint_ranges.h"
 #include "pose_descent.h"
 #include "pose_error.h"
@@ -121,7 +122,7 @@ Solution InverseKinematics::solve(const Eigen::Isometry3d& X_base_tip, const Eig
                      " values, expected one for each of its " + std::to_string(n) + " joints");
   }
   if (!(options.tolerance > 0.0) || options.most_iterations < 1 || options.further_starts < 0) {
-    throw ConfigurationError("inverse kinematics: tolerance is " + std::to_string(options.tolerance) + ", iterations " +
+    throw ConfigurationError("inverse kinematics: tolerance is " + print(options.tolerance) + ", iterations " +
                              std::to_string(options.most_iterations) + ", further starts " +
                              std::to_string(options.further_starts) +
                              "; expected a positive tolerance, at least one iteration, and no negative count");

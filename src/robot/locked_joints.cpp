@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 #include "near_names.h"
 #include "urdf_tree.h"
 
@@ -49,7 +50,7 @@ void LockedJoints::refuseWhatCannotBeGiven(const std::vector<urdf::JointConstSha
       throw ModelError("joint '" + name + "' cannot be locked: it is one of the arm's moving joints");
     }
     if (!std::isfinite(position)) {
-      throw ModelError("joint '" + name + "' cannot be locked at " + std::to_string(position) +
+      throw ModelError("joint '" + name + "' cannot be locked at " + print(position) +
                        ", expected a finite position in rad or m");
     }
   }

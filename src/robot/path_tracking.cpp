@@ -5,6 +5,7 @@
 
 #include "demo_logger/robot/inverse_kinematics.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 #include "pose_error.h"
 #include "posture_plan.h"
 
@@ -124,8 +125,8 @@ PathTracker::PathTracker(const RobotDescription& robot, const Poses& poses, cons
   }
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (!(times[i] > times[i - 1])) {
-      throw ConfigurationError("tracking: time " + std::to_string(times[i]) + " s does not follow " +
-                               std::to_string(times[i - 1]) + " s; times must strictly increase");
+      throw ConfigurationError("tracking: time " + printExactly(times[i]) + " s does not follow " +
+                               printExactly(times[i - 1]) + " s; times must strictly increase");
     }
   }
   implementation_ = std::make_unique<Implementation>(robot, poses, times, start, options);

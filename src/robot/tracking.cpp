@@ -6,6 +6,7 @@
 
 #include "comfort.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 #include "joint_ranges.h"
 #include "motion_limits.h"
 #include "pose_error.h"
@@ -267,9 +268,9 @@ class Tracker::Implementation {
 
 Tracker::Tracker(const RobotDescription& robot, const TrackingOptions& options) {
   if (!(options.max_velocity > 0.0) || !(options.max_acceleration > 0.0) || !(options.tolerance > 0.0)) {
-    throw ConfigurationError("tracking: the velocity limit is " + std::to_string(options.max_velocity) +
-                             ", the acceleration limit " + std::to_string(options.max_acceleration) +
-                             ", the tolerance " + std::to_string(options.tolerance) + "; expected positive numbers");
+    throw ConfigurationError("tracking: the velocity limit is " + print(options.max_velocity) +
+                             ", the acceleration limit " + print(options.max_acceleration) + ", the tolerance " +
+                             print(options.tolerance) + "; expected positive numbers");
   }
   implementation_ = std::make_unique<Implementation>(robot, options);
 }
@@ -308,7 +309,7 @@ void Tracker::prefer(const Eigen::VectorXd& posture, const Eigen::VectorXd& velo
 
 TrackedStep Tracker::step(const Eigen::Isometry3d& X_base_target, double dt) {
   if (!(dt > 0.0) || !std::isfinite(dt)) {
-    throw ConfigurationError("tracking: a step of " + std::to_string(dt) + " s, expected a positive time");
+    throw ConfigurationError("tracking: a step of " + print(dt) + " s, expected a positive time");
   }
   const RigidPose target{X_base_target.linear(), X_base_target.translation()};
   if (!isRigid(target)) return implementation_->slowDown(dt);

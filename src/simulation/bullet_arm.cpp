@@ -8,6 +8,7 @@
 #include "arm_dynamics.h"
 #include "bullet_body.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
@@ -55,7 +56,7 @@ class BulletArm::Implementation {
     for (int i = 0; i < size; ++i) {
       if (std::isfinite(values[i])) continue;
       throw ModelError("simulated robot '" + description.name + "': " + what + " of joint '" +
-                       description.joints[static_cast<std::size_t>(i)].name + "' is " + std::to_string(values[i]) +
+                       description.joints[static_cast<std::size_t>(i)].name + "' is " + print(values[i]) +
                        ", expected a finite number");
     }
   }
@@ -117,8 +118,8 @@ void BulletArm::step(const Eigen::VectorXd& torque, double duration, int substep
   Implementation& own = *implementation_;
   own.check("torque", torque);
   if (!(duration > 0.0) || !std::isfinite(duration) || substeps < 1) {
-    throw ModelError("simulated robot '" + own.description.name + "': a step of " + std::to_string(duration) +
-                     " s in " + std::to_string(substeps) + " parts, expected a positive time and at least one part");
+    throw ModelError("simulated robot '" + own.description.name + "': a step of " + print(duration) + " s in " +
+                     std::to_string(substeps) + " parts, expected a positive time and at least one part");
   }
   const double step = duration / substeps;
   own.friction.setZero();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
@@ -57,7 +58,7 @@ void requireSize(const CollisionShape& shape) {
   const int numbers = shape.kind == Kind::box ? 3 : shape.kind == Kind::cylinder ? 2 : 1;
   for (int i = 0; i < numbers; ++i) {
     if (std::isfinite(shape.size[i]) && shape.size[i] > 0.0) continue;
-    throw ModelError("an obstacle has a size of " + std::to_string(shape.size[i]) + " m, expected above 0");
+    throw ModelError("an obstacle has a size of " + print(shape.size[i]) + " m, expected above 0");
   }
   if (!shape.pose.matrix().allFinite()) throw ModelError("an obstacle has a pose that is not finite");
 }

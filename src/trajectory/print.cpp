@@ -23,6 +23,11 @@ std::string text(double number, std::chars_format format, int precision) {
 
 std::string print(double number) { return text(number, std::chars_format::general, kSignificantDigits); }
 
+std::string printExactly(double number) {
+  std::array<char, kLongest> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr};
+}
+
 std::string print(double number, int decimals) {
   return text(number, std::chars_format::fixed, std::min(decimals, kMostDecimals));
 }

@@ -58,6 +58,26 @@ void expectEqual(const Rows& found, const Rows& expected) {
   }
 }
 
+TEST(CsvReaderTest, AWordIsTakenOnlyWhereItIsExpected) {
+  const std::string text = "x,status\n1,solved\n2,3\n";
+  EXPECT_EQ(errorOf(text, {{}, false}),
+            "reach_07.csv:2: column 2 (status) is \"solved\", expected a number, or NaN where the value is missing. "
+            "Remove a second line of units or names.");
+  const TemporaryFolder folder;
+  CsvReader reader(folder.write("reach_07.csv", text), {{}, false, {"status", "absent"}});
+  std::vector<double> row;
+  ASSERT_TRUE(reader.next(row));
+  EXPECT_EQ(reader.word(1), "solved");
+  EXPECT_EQ(row[0], 1.0);
+  EXPECT_TRUE(std::isnan(row[1]));
+  ASSERT_TRUE(reader.next(row));
+  EXPECT_EQ(reader.word(1), "") << "a number is no word";
+  EXPECT_EQ(row[1], 3.0);
+  EXPECT_EQ(errorOf("x,status\nno,solved\n", {{}, false, {"status"}}),
+            "reach_07.csv:2: column 1 (x) is \"no\", expected a number, or NaN where the value is missing. Remove a "
+            "second line of units or names.");
+}
+
 TEST(CsvReaderTest, ReadsNamesAndRows) {
   const TemporaryFolder folder;
   CsvReader reader(folder.write("a.csv", "time,q_elbow\n0,1.5\n0.01,NaN\n"));

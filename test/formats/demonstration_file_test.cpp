@@ -230,7 +230,7 @@ TEST(DemonstrationFileTest, ADemonstrationThatContradictsItselfIsNotWritten) {
   demonstration.time[2] = 0.005;
   EXPECT_EQ(errorOfWriting(csv, demonstration),
             csv.string() +
-                ": is not written: time 0.005000 s of row 3 is not finite or does not follow the one before; "
+                ": is not written: time 0.005 s of row 3 is not finite or does not follow the one before; "
                 "times must strictly increase.");
   EXPECT_EQ(errorOfWriting(csv, Demonstration()),
             csv.string() + ": is not written: the demonstration has no rows, expected at least one.");

@@ -113,7 +113,7 @@ TEST_F(NodeStartTest, AnUnknownNameIsRefused) {
 
 TEST_F(NodeStartTest, JointStatesOnlyComeAtControlTicks) {
   expectRefusal(start("simulated_arm_node", "publish_rate", 300),
-                "simulated_arm: /started/publish_rate is 300.000000 Hz, expected a whole part of the control rate of "
+                "simulated_arm: /started/publish_rate is 300 Hz, expected a whole part of the control rate of "
                 "1000 Hz, as joint states are those of control ticks.");
 }
 

@@ -176,7 +176,7 @@ TEST(AlignmentTest, AQuaternionThatIsNoRotationIsKeptAndReported) {
   EXPECT_EQ(timeline.listener.at(0, "hand_qw"), 2.0);
   EXPECT_EQ(timeline.counter("non_unit_quaternions"), 1U);
   EXPECT_EQ(timeline.faultWith("quaternion"),
-            "stream hand (/hand) sent an orientation whose quaternion has length 2.000000, expected 1; it is recorded "
+            "stream hand (/hand) sent an orientation whose quaternion has length 2, expected 1; it is recorded "
             "as it came");
 }
 

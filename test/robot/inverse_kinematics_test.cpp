@@ -252,7 +252,7 @@ TEST(InverseKinematicsTest, SeedsOfTheWrongSizeAndSenselessOptionsAreSaidInASent
   SolveOptions options;
   options.tolerance = -1.0;
   EXPECT_EQ(errorOf([&] { solver.solve(Eigen::Isometry3d::Identity(), Eigen::VectorXd::Zero(2), q, options); }),
-            "inverse kinematics: tolerance is -1.000000, iterations 10000, further starts 1; expected a positive "
+            "inverse kinematics: tolerance is -1, iterations 10000, further starts 1; expected a positive "
             "tolerance, at least one iteration, and no negative count");
 }
 

@@ -295,18 +295,18 @@ TEST(TrackingTest, SenselessLimitsStartsAndStepsAreSaidInASentence) {
   TrackingOptions options;
   options.max_acceleration = 0.0;
   EXPECT_EQ(errorOf([&] { Tracker tracker(arm, options); }),
-            "tracking: the velocity limit is inf, the acceleration limit 0.000000, the tolerance 0.001000; expected "
+            "tracking: the velocity limit is inf, the acceleration limit 0, the tolerance 0.001; expected "
             "positive numbers");
   Tracker tracker(arm);
   EXPECT_EQ(errorOf([&] { tracker.reset(Eigen::VectorXd::Zero(3)); }),
             "robot 'two_link': cannot start tracking from 3 values, expected a finite one for each of its 2 joints");
   EXPECT_EQ(errorOf([&] { tracker.step(Eigen::Isometry3d::Identity(), 0.0); }),
-            "tracking: a step of 0.000000 s, expected a positive time");
+            "tracking: a step of 0 s, expected a positive time");
   const PathTracker::Poses poses(2, Eigen::Isometry3d::Identity());
   EXPECT_EQ(errorOf([&] {
-              PathTracker(arm, poses, {0.0, 0.0}, Eigen::VectorXd::Zero(2));
+              PathTracker(arm, poses, {0.5000001, 0.5}, Eigen::VectorXd::Zero(2));
             }),
-            "tracking: time 0.000000 s does not follow 0.000000 s; times must strictly increase");
+            "tracking: time 0.5 s does not follow 0.5000001 s; times must strictly increase");
   EXPECT_EQ(errorOf([&] { PathTracker(arm, poses, {0.0}, Eigen::VectorXd::Zero(2)); }),
             "tracking: 1 times for 2 poses, expected one for each");
 }

@@ -222,7 +222,7 @@ TEST(BulletArmTest, BadTorquesAreRefusedBeforeAnythingMoves) {
   EXPECT_EQ(errorOf([&] { arm.step(Eigen::VectorXd::Zero(2), kPeriod, kSubsteps); }),
             "simulated robot 'pendulum': torque has 2 values, expected one for each of its 1 joints");
   EXPECT_EQ(errorOf([&] { arm.step(vector1(0.0), 0.0, kSubsteps); }),
-            "simulated robot 'pendulum': a step of 0.000000 s in 4 parts, expected a positive time and at least one "
+            "simulated robot 'pendulum': a step of 0 s in 4 parts, expected a positive time and at least one "
             "part");
   EXPECT_EQ(errorOf([&] { arm.step(vector1(0.0), kPeriod, 0); }),
             "simulated robot 'pendulum': a step of 0.001000 s in 0 parts, expected a positive time and at least one "

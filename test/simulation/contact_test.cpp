@@ -195,7 +195,7 @@ TEST(ContactTest, AnObstacleWithoutSizeIsRefused) {
     BulletArm arm(slide, nothing);
     FAIL() << "taken";
   } catch (const ModelError& error) {
-    EXPECT_STREQ(error.what(), "an obstacle has a size of 0.000000 m, expected above 0");
+    EXPECT_STREQ(error.what(), "an obstacle has a size of 0 m, expected above 0");
   }
 }
 

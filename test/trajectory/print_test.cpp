@@ -17,6 +17,14 @@ TEST(PrintTest, NumbersAreShortUnlessDecimalsAreAskedFor) {
   EXPECT_EQ(print(-12.3456, 1), "-12.3");
 }
 
+TEST(PrintTest, NumbersThatDifferArePrintedDifferentlyWhereThatMatters) {
+  EXPECT_EQ(print(1234.567891), print(1234.567892));
+  EXPECT_EQ(printExactly(1234.567891), "1234.567891");
+  EXPECT_EQ(printExactly(1234.567892), "1234.567892");
+  EXPECT_EQ(printExactly(0.1), "0.1");
+  EXPECT_EQ(printExactly(-std::numeric_limits<double>::max()), "-1.7976931348623157e+308");
+}
+
 TEST(PrintTest, NoNumberIsTooLong) {
   const double largest = std::numeric_limits<double>::max();
   EXPECT_EQ(print(-largest, 3).size(), 1 + 309 + 1 + 3);

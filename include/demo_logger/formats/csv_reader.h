@@ -14,6 +14,7 @@ namespace demo_logger {
 struct CsvExpectation {
   std::vector<std::string> columns;  // beside `time`
   bool time = true;                  // a column `time` [s], finite and strictly increasing
+  std::vector<std::string> words;    // columns in which a cell may be a word instead of a number
 };
 
 /// Reads a CSV of numbers row by row, in memory for one row: those this project writes, and those of others as far as
@@ -39,6 +40,8 @@ class CsvReader {
   bool next(std::vector<double>& row);
   /// Of the row last read; the header is line 1.
   std::size_t line() const;
+  /// Of the row last read, where the expectation allows it and its number is NaN; empty if the cell is a number.
+  const std::string& word(std::size_t column) const;
 
   /// After the last row: a sentence if the file ends without a line feed, so that its last number may have been cut.
   const std::vector<std::string>& notes() const;
