@@ -1,6 +1,7 @@
 #include "demo_logger/pipelines/tool_pose.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -85,7 +86,7 @@ ToolPose::~ToolPose() = default;
 std::vector<Column> ToolPose::open(const std::vector<Column>& recorded) { return implementation_->open(recorded); }
 void ToolPose::append(Row& row) { implementation_->append(row); }
 
-void addToolPose(const RobotDescription& robot, Demonstration& demonstration) {
+std::size_t addToolPose(const RobotDescription& robot, Demonstration& demonstration) {
   for (const std::string& joint : robot.jointNames()) {
     if (!findJointColumn(demonstration.columns, kPosition, joint)) {
       throw ConfigurationError("no column `" + jointColumnName(kPosition, joint) + "` with the position of joint '" +
@@ -96,13 +97,16 @@ void addToolPose(const RobotDescription& robot, Demonstration& demonstration) {
   const Eigen::Index before = replaceColumns(added, demonstration);
   ToolPose tool(robot);
   tool.open(demonstration.columns);
+  std::size_t without_pose = 0;
   Row row;
   for (Eigen::Index i = 0; i < demonstration.values.rows(); ++i) {
     auto values = demonstration.values.row(i);
     row.values.assign(values.data(), values.data() + before);
     tool.append(row);
     std::copy(row.values.begin() + before, row.values.end(), values.data() + before);
+    if (std::isnan(row.values.back())) ++without_pose;
   }
+  return without_pose;
 }
 
 }  // namespace demo_logger

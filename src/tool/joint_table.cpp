@@ -10,6 +10,7 @@
 #include "demo_logger/robot/inverse_kinematics.h"
 #include "demo_logger/robot/path_tracking.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
@@ -42,7 +43,7 @@ class JointTableWriter {
     table_.csv += '\n';
     ++table_.counted[status];
     if (met) ++table_.met;
-    table_.largest_residual = std::fmax(table_.largest_residual, residual);
+    if (!std::isnan(residual)) table_.largest_residual = std::max(table_.largest_residual.value_or(0.0), residual);
     table_.mean_microseconds += microseconds;
     if (table_.rows % kRowsPerProgress == 0) progress_(table_.rows, poses_.poses.size());
   }
@@ -72,7 +73,7 @@ std::vector<double> timesOf(const PoseTable& poses, const std::string& file, dou
   for (std::size_t row = 0; row < poses.time.size(); ++row) {
     const bool follows = row == 0 || poses.time[row] > poses.time[row - 1];
     if (!std::isfinite(poses.time[row]) || !follows) {
-      throw FileError(file + ":" + std::to_string(row + 2) + ": time " + std::to_string(poses.time[row]) +
+      throw FileError(file + ":" + std::to_string(row + 2) + ": time " + printExactly(poses.time[row]) +
                       " s does not follow the row before; to track, times must strictly increase");
     }
   }

@@ -27,8 +27,8 @@ struct TrackTableOptions {
 struct JointTable {
   std::string csv;  // [time,] q_<joint> …, residual, microseconds, status
   std::size_t rows = 0;
-  std::size_t met = 0;            // solved, or tracked
-  double largest_residual = 0.0;  // of the rows with one [m or rad]
+  std::size_t met = 0;                     // solved, or tracked
+  std::optional<double> largest_residual;  // of the rows with one [m or rad]
   double mean_microseconds = 0.0;
   double planning_seconds = 0.0;               // for foresight, beside the rows' own time
   std::map<std::string, std::size_t> counted;  // rows by status

@@ -100,7 +100,7 @@ Eigen::VectorXd toSeed(const std::vector<double>& row, const std::vector<std::si
 }  // namespace
 
 PoseTable readPoseTable(const std::filesystem::path& file, const RobotDescription& arm, RowNotes& notes) {
-  CsvReader reader(file, CsvExpectation{{}, false});
+  CsvReader reader(file, CsvExpectation{{}, false, {"status"}});
   const std::array<std::size_t, 7> pose = findPose(reader, file);
   const std::vector<std::size_t> seed = findSeed(reader, file, arm);
   const std::optional<std::size_t> time = reader.find("time");

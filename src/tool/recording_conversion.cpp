@@ -6,7 +6,9 @@
 #include "demo_logger/formats/sidecar.h"
 #include "demo_logger/trajectory/error.h"
 #include "src/ros/version.h"
+#include "src/tool/number_option.h"
 #include "src/tool/output_plan.h"
+#include "src/tool/plain_table.h"
 #include "src/tool/verbs.h"
 
 namespace demo_logger {
@@ -33,6 +35,16 @@ void noteOrigin(const std::filesystem::path& input, const RobotDescription& arm,
   metadata.provenance.steps.push_back(step);
 }
 
+/// The words of a table that is no recording, if it is none and such are taken.
+using Words = std::optional<std::vector<std::string>>;
+
+LoadedDemonstration readInput(const std::filesystem::path& file, bool plain_tables, Words& words) {
+  if (!plain_tables || !isPlainTable(file)) return readDemonstration(file);
+  PlainTable table = readPlainTable(file);
+  words = std::move(table.status);
+  return std::move(table.numbers);
+}
+
 /// Two files each, so their places are judged before any is written.
 void refuseSidecarsThatAreThere(const std::vector<InputAndOutput>& plan) {
   for (const InputAndOutput& entry : plan) {
@@ -51,9 +63,7 @@ void addConversionOptions(CLI::App& verb, ConversionOptions& options, const std:
   verb.add_option("-o,--output", options.output, "recording to write; of several inputs the directory for theirs")
       ->required();
   addRobotOptions(verb, options.robot);
-  verb.add_option("--jobs", options.jobs, "recordings worked on at once")
-      ->capture_default_str()
-      ->check(CLI::Range(1U, 256U));
+  addJobsOption(verb, options.jobs, "recordings worked on at once");
   verb.add_flag("--force", options.force, "overwrite what is there");
   verb.add_flag("--json", options.json, "print one JSON object instead");
 }
@@ -64,7 +74,9 @@ int convertRecordings(const ConversionOptions& options, const Conversion& conver
   if (!options.force) refuseSidecarsThatAreThere(plan);
   std::vector<LoadedDemonstration> recordings(plan.size());
   std::vector<ConversionReport> reports(plan.size());
-  runJobs(plan.size(), options.jobs, [&](std::size_t i) { recordings[i] = readDemonstration(plan[i].input); });
+  std::vector<Words> words(plan.size());
+  runJobs(plan.size(), options.jobs,
+          [&](std::size_t i) { recordings[i] = readInput(plan[i].input, options.plain_tables, words[i]); });
   if (conversion.prepare) {
     try {
       if (const auto exit_code = conversion.prepare(arm, recordings)) return *exit_code;
@@ -88,17 +100,20 @@ int convertRecordings(const ConversionOptions& options, const Conversion& conver
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const std::string output = plan[i].output.string();
     const Demonstration& demonstration = recordings[i].demonstration;
-    writeDemonstration(plan[i].output, demonstration, options.force);
+    const Eigen::Index rows = demonstration.values.rows();
+    if (words[i]) {
+      writePlainTable(plan[i].output, {recordings[i], *words[i]}, options.force);
+    } else {
+      writeDemonstration(plan[i].output, demonstration, options.force);
+    }
     if (reports[i].has_findings) exit_code = kFindings;
-    ordered_json object = {{"file", plan[i].input.string()},
-                           {"output", output},
-                           {"rows", demonstration.time.size()},
-                           {"notes", recordings[i].notes}};
+    ordered_json object = {
+        {"file", plan[i].input.string()}, {"output", output}, {"rows", rows}, {"notes", recordings[i].notes}};
     if (reports[i].figures) reports[i].figures(object);
     list.push_back(std::move(object));
     if (options.json) continue;
     for (const std::string& note : recordings[i].notes) std::cout << "note: " << note << '\n';
-    std::cout << output << ": " << demonstration.time.size() << " rows " << reports[i].sentence << '\n';
+    std::cout << output << ": " << rows << " rows " << reports[i].sentence << '\n';
   }
   report["recordings"] = std::move(list);
   if (options.json) std::cout << report.dump(2) << '\n';

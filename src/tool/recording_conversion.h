@@ -16,6 +16,7 @@ struct ConversionOptions {
   std::vector<std::string> inputs;
   std::string output;
   RobotOptions robot;
+  bool plain_tables = false;  // takes those too (src/tool/plain_table.h), and gives such back
   unsigned jobs = 1;
   bool force = false;
   bool json = false;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 
@@ -29,7 +30,12 @@ RobotDescription describeRobot(const RobotOptions& options) {
       throw ConfigurationError("--at \"" + text +
                                "\": expected JOINT=VALUE with a position in rad or m, as in --at torso=0.3");
     }
-    description.locked[text.substr(0, equals)] = value;
+    const std::string joint = text.substr(0, equals);
+    if (!description.locked.emplace(joint, value).second) {
+      throw ConfigurationError("--at says twice where joint '" + joint + "' is held, at " +
+                               print(description.locked[joint]) + " and at " + print(value) +
+                               " [rad or m]; expected once per joint");
+    }
   }
   return describeRobotFile(options.urdf, description);
 }

@@ -9,6 +9,7 @@
 
 #include "demo_logger/formats/atomic_file.h"
 #include "src/tool/joint_table.h"
+#include "src/tool/number_option.h"
 #include "src/tool/output_plan.h"
 #include "src/tool/pose_table.h"
 #include "src/tool/progress.h"
@@ -80,7 +81,7 @@ ordered_json toJson(const InputAndOutput& entry, const Result& result) {
           {"output", entry.output.string()},
           {"rows", table.rows},
           {"status", table.counted},
-          {"largest_residual", table.largest_residual},
+          {"largest_residual", table.largest_residual ? ordered_json(*table.largest_residual) : ordered_json()},
           {"mean_microseconds", table.mean_microseconds},
           {"planning_seconds", table.planning_seconds},
           {"notes", result.notes}};
@@ -92,7 +93,12 @@ void print(const InputAndOutput& entry, const Result& result) {
   std::ostringstream figures;
   figures.precision(3);
   for (const auto& [status, rows] : table.counted) figures << rows << ' ' << status << ", ";
-  figures << "largest residual " << table.largest_residual << " m or rad, " << table.mean_microseconds << " µs a row";
+  if (table.largest_residual) {
+    figures << "largest residual " << *table.largest_residual << " m or rad, ";
+  } else {
+    figures << "no residual, ";
+  }
+  figures << table.mean_microseconds << " µs a row";
   if (table.planning_seconds > 0.0) figures << ", " << table.planning_seconds << " s for the plan";
   std::cout << entry.output.string() << ": " << table.rows << " rows: " << figures.str() << '\n';
 }
@@ -137,26 +143,28 @@ void addIkVerb(CLI::App& tool, int& exit_code) {
   verb->add_option("--mode", options->mode, "solve: each pose by itself; track: one motion within the arm's limits")
       ->capture_default_str()
       ->check(CLI::IsMember({"solve", "track"}));
-  verb->add_option("--tolerance", options->tolerance,
-                   "[m] and [rad] that position and rotation may be off (default: 1e-6 to solve, 1e-3 to track)")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--budget", options->budget, "solve: [s] for one row (default: bounded by iterations, some 5 ms)")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--rate", options->rate, "track: [Hz] of a table without time")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--max-velocity", options->tracking.max_velocity,
-                   "track: [rad/s or m/s] of each joint, beside the description's (default: those alone)")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--max-acceleration", options->tracking.max_acceleration, "track: [rad/s² or m/s²] of each joint")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+  requireNumber(
+      *verb->add_option("--tolerance", options->tolerance,
+                        "[m] and [rad] that position and rotation may be off (default: 1e-6 to solve, 1e-3 to track)"),
+      positive("m and rad"));
+  requireNumber(*verb->add_option("--budget", options->budget,
+                                  "solve: [s] for one row (default: bounded by iterations, some 5 ms)"),
+                positive("s"));
+  requireNumber(
+      *verb->add_option("--rate", options->rate, "track: [Hz] of a table without time")->capture_default_str(),
+      positive("Hz"));
+  requireNumber(*verb->add_option("--max-velocity", options->tracking.max_velocity,
+                                  "track: [rad/s or m/s] of each joint, beside the description's (default: those "
+                                  "alone)"),
+                positive("rad/s or m/s"));
+  requireNumber(*verb->add_option("--max-acceleration", options->tracking.max_acceleration,
+                                  "track: [rad/s² or m/s²] of each joint")
+                     ->capture_default_str(),
+                positive("rad/s² or m/s²"));
   verb->add_flag("--no-foresight", options->no_foresight,
                  "track: each step from the poses up to it, as a live robot must; else what a pose leaves open is "
                  "chosen with a view to the next 20 s");
-  verb->add_option("--jobs", options->jobs, "tables worked on at once")
-      ->capture_default_str()
-      ->check(CLI::Range(1U, 256U));
+  addJobsOption(*verb, options->jobs, "tables worked on at once");
   verb->add_flag("--force", options->force, "overwrite what is there");
   verb->add_flag("--json", options->json, "print one JSON object instead");
   verb->footer(

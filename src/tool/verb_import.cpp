@@ -7,6 +7,7 @@
 #include "demo_logger/formats/sidecar.h"
 #include "demo_logger/trajectory/error.h"
 #include "src/tool/bag_import.h"
+#include "src/tool/number_option.h"
 #include "src/tool/progress.h"
 #include "src/tool/stream_option.h"
 #include "src/tool/verbs.h"
@@ -129,12 +130,17 @@ void addImportVerb(CLI::App& tool, int& exit_code) {
                    "named teleop_cmd or cmd_vel)")
       ->type_size(1)
       ->allow_extra_args(false);
-  verb->add_option("--max-wait", options->max_wait, "[s] that a row waits for stragglers")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 10.0));
-  verb->add_option("--split-gap", options->split_gap, "[s] a longer pause begins another episode; 0: never")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+  NumberRange seconds;
+  seconds.unit = "s";
+  seconds.lower = 0.0;
+  requireNumber(
+      *verb->add_option("--split-gap", options->split_gap, "[s] a longer pause begins another episode; 0: never")
+           ->capture_default_str(),
+      seconds);
+  seconds.upper = 10.0;
+  requireNumber(
+      *verb->add_option("--max-wait", options->max_wait, "[s] that a row waits for stragglers")->capture_default_str(),
+      seconds);
   verb->add_option("--channel", options->channel, "over which it was demonstrated")
       ->capture_default_str()
       ->check(CLI::IsMember({"teleoperation", "kinesthetic", "vr", "unknown"}));

@@ -6,6 +6,7 @@
 
 #include "demo_logger/pipelines/human_torque.h"
 #include "demo_logger/trajectory/print.h"
+#include "src/tool/number_option.h"
 #include "src/tool/recording_conversion.h"
 #include "src/tool/torque_fit.h"
 #include "src/tool/verbs.h"
@@ -96,15 +97,15 @@ void addTorqueVerb(CLI::App& tool, int& exit_code) {
   verb->add_option("--side", options->side,
                    "of the gears that efforts were measured on (default: as the recording says)")
       ->check(CLI::IsMember({"motor", "link"}));
-  verb->add_option("--control-period", options->control_period,
-                   "[s] of the arm's controller, for held efforts (default: as the recording says)")
-      ->check(CLI::PositiveNumber);
+  requireNumber(*verb->add_option("--control-period", options->control_period,
+                                  "[s] of the arm's controller, for held efforts (default: as the recording says)"),
+                positive("s"));
   verb->add_flag("--gravity-compensated", options->gravity_compensated,
                  "the arm was compensated for gravity alone; efforts are not needed");
   addTorqueFitOptions(*verb, options->fit);
-  verb->add_option("--max-gap", options->max_gap, "[s] nothing is concluded across a longer silence")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+  requireNumber(*verb->add_option("--max-gap", options->max_gap, "[s] nothing is concluded across a longer silence")
+                     ->capture_default_str(),
+                positive("s"));
   verb->footer(
       "Example: demo_tool torque demos/demo_000001.csv -o taught.csv --urdf arm.urdf --base base_link --tip tool0\n"
       "Adds tau_h_<joint> with tau_h_std_<joint>, the smoothed dq_<joint> and ddq_<joint>, and the force at the tool\n"

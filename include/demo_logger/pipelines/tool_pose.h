@@ -30,7 +30,7 @@ class ToolPose : public DerivedColumns {
 };
 
 /// Appends the tool pose to a recording, in place of columns of these names that it has. Throws ConfigurationError
-/// naming the first joint without a position.
-void addToolPose(const RobotDescription& robot, Demonstration& demonstration);
+/// naming the first joint without a position. Returns in how many rows there is no pose.
+std::size_t addToolPose(const RobotDescription& robot, Demonstration& demonstration);
 
 }  // namespace demo_logger
