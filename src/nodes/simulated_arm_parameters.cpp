@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -17,6 +18,8 @@ Range anyNumber(const std::string& unit) {
   return range;
 }
 
+const Range kSeeds{0.0, std::numeric_limits<int>::max(), ""};  // what a parameter can hold
+
 SensorConfiguration readSensors(Parameters parameters) {
   SensorConfiguration sensors;
   sensors.position_noise = parameters.number("position_noise", sensors.position_noise, {0.0, INFINITY, "rad or m"});
@@ -29,7 +32,7 @@ SensorConfiguration readSensors(Parameters parameters) {
   sensors.velocity_cutoff = parameters.number("velocity_cutoff", sensors.velocity_cutoff, {0.0, INFINITY, "Hz"});
   sensors.effort_side =
       parameters.choice("effort_side", "motor", {"motor", "link"}) == "link" ? EffortSide::link : EffortSide::motor;
-  sensors.seed = static_cast<std::uint64_t>(parameters.integer("seed", 1, {0.0, INFINITY, ""}));
+  sensors.seed = static_cast<std::uint64_t>(parameters.integer("seed", 1, kSeeds));
   parameters.rejectUnknown();
   return sensors;
 }
@@ -44,7 +47,7 @@ JointStateFaultsConfiguration readFaults(Parameters parameters) {
   faults.permute = parameters.number("permute", faults.permute, {0.0, 1.0, ""});
   faults.split = parameters.integer("split", faults.split, {0.0, INFINITY, "joints"});
   faults.gripper = parameters.texts("gripper", {});
-  faults.seed = static_cast<std::uint64_t>(parameters.integer("seed", 1, {0.0, INFINITY, ""}));
+  faults.seed = static_cast<std::uint64_t>(parameters.integer("seed", 1, kSeeds));
   parameters.rejectUnknown();
   return faults;
 }
@@ -227,7 +230,7 @@ SimulatedArmParameters readSimulatedArmParameters(const ros::NodeHandle& private
   controller.impedance = {spread(impedance.stiffness, joints), spread(impedance.damping, joints)};
   result.links = attachedLinks(urdf, chain);
   arm.surroundings.links = result.links;
-  validate(result.faults, result.robot.joints.size());
+  validate(result.faults, result.robot.jointNames());
   return result;
 }
 

@@ -17,9 +17,10 @@ std::string withUnit(const std::string& text, const Range& range) {
 std::string expectation(const std::string& kind, const Range& range) {
   const bool below = std::isfinite(range.upper);
   const bool above = std::isfinite(range.lower);
-  if (above && below) return withUnit(kind + " from " + print(range.lower) + " to " + print(range.upper), range);
-  if (above) return withUnit(kind + " of at least " + print(range.lower), range);
-  if (below) return withUnit(kind + " of at most " + print(range.upper), range);
+  if (above && below)
+    return withUnit(kind + " from " + printExactly(range.lower) + " to " + printExactly(range.upper), range);
+  if (above) return withUnit(kind + " of at least " + printExactly(range.lower), range);
+  if (below) return withUnit(kind + " of at most " + printExactly(range.upper), range);
   return range.unit.empty() ? kind : kind + " [" + range.unit + "]";
 }
 
@@ -32,7 +33,7 @@ std::string describe(const XmlRpcValue& given) {
     case XmlRpcValue::TypeInt:
       return print(static_cast<int>(value));
     case XmlRpcValue::TypeDouble:
-      return print(static_cast<double>(value));
+      return printExactly(static_cast<double>(value));
     case XmlRpcValue::TypeString:
       return "the text \"" + static_cast<std::string>(value) + "\"";
     case XmlRpcValue::TypeArray:
@@ -63,7 +64,7 @@ double toNumber(const std::string& name, XmlRpcValue value, const Range& range) 
     refuse(name, describe(value), expectation("a number", range));
   }
   if (!std::isfinite(number) || number < range.lower || number > range.upper) {
-    refuse(name, withUnit(print(number), range), expectation("a number", range));
+    refuse(name, withUnit(printExactly(number), range), expectation("a number", range));
   }
   return number;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
@@ -23,7 +24,7 @@ JointReading part(const JointReading& reading, Eigen::Index first, Eigen::Index 
 
 }  // namespace
 
-void validate(const JointStateFaultsConfiguration& c, std::size_t joints) {
+void validate(const JointStateFaultsConfiguration& c, const std::vector<std::string>& joints) {
   constexpr double kLongest = 10.0;  // [s]
   require(c.delay >= 0.0 && c.delay <= kLongest, "delay", c.delay, "from 0 to 10 s");
   require(c.jitter >= 0.0 && c.jitter <= kLongest, "jitter", c.jitter, "from 0 to 10 s");
@@ -31,14 +32,24 @@ void validate(const JointStateFaultsConfiguration& c, std::size_t joints) {
   require(c.duplicate >= 0.0 && c.duplicate <= 1.0, "duplicate", c.duplicate, "a probability from 0 to 1");
   require(c.zero_stamp >= 0.0 && c.zero_stamp <= 1.0, "zero_stamp", c.zero_stamp, "a probability from 0 to 1");
   require(c.permute >= 0.0 && c.permute <= 1.0, "permute", c.permute, "a probability from 0 to 1");
-  const int most = static_cast<int>(joints) - 1;
+  const int most = static_cast<int>(joints.size()) - 1;
   require(c.split >= 0 && c.split <= most, "split", c.split,
           "from 0 to " + std::to_string(most) + ", so that both messages have joints");
+  std::set<std::string> arm(joints.begin(), joints.end()), gripper;
+  for (const std::string& joint : c.gripper) {
+    const std::string fault = joint.empty()                   ? "has a joint without a name"
+                              : arm.count(joint) != 0         ? "names " + joint + ", a joint of the arm"
+                              : !gripper.insert(joint).second ? "names " + joint + " twice"
+                                                              : "";
+    if (fault.empty()) continue;
+    throw ConfigurationError("joint state faults: gripper " + fault +
+                             ", expected names of joints beside the arm, once each.");
+  }
 }
 
 JointStateFaults::JointStateFaults(const JointStateFaultsConfiguration& configuration, std::vector<std::string> joints)
     : configuration_(configuration), joints_(std::move(joints)), random_(configuration.seed) {
-  validate(configuration_, joints_.size());
+  validate(configuration_, joints_);
 }
 
 void JointStateFaults::offer(Nanoseconds stamp, const JointReading& reading) {

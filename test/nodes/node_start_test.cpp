@@ -84,6 +84,11 @@ TEST_F(NodeStartTest, AValueOutOfRangeIsNamedWithWhatWasExpected) {
                 "simulated_human: /started/reaction_delay is 2 s, expected a number from 0 to 0.5 s.");
 }
 
+TEST_F(NodeStartTest, ASeedThatNoParameterCanHoldIsToldTheRange) {
+  expectRefusal(runToItsEnd({pathOf("simulated_arm_node"), "__name:=started", "_sensors/seed:=99999999999"}),
+                "simulated_arm: /started/sensors/seed is 99999999999, expected a whole number from 0 to 2147483647.");
+}
+
 TEST_F(NodeStartTest, AWrongTypeIsNamedWithWhatWasExpected) {
   expectRefusal(start("simulated_arm_node", "publish_clock", std::string("yes")),
                 "simulated_arm: /started/publish_clock is the text \"yes\", expected true or false.");

@@ -164,6 +164,14 @@ TEST(JointStateFaultsTest, WhatCannotBeIsNamed) {
   configuration = {};
   configuration.delay = -0.1;
   EXPECT_EQ(messageOf(configuration), "joint state faults: delay is -0.1, expected from 0 to 10 s.");
+  const std::string expected = ", expected names of joints beside the arm, once each.";
+  configuration = {};
+  configuration.gripper = {"finger", "b"};
+  EXPECT_EQ(messageOf(configuration), "joint state faults: gripper names b, a joint of the arm" + expected);
+  configuration.gripper = {"finger", "finger"};
+  EXPECT_EQ(messageOf(configuration), "joint state faults: gripper names finger twice" + expected);
+  configuration.gripper = {""};
+  EXPECT_EQ(messageOf(configuration), "joint state faults: gripper has a joint without a name" + expected);
 }
 
 }  // namespace

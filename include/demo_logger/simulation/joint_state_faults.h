@@ -25,8 +25,8 @@ struct JointStateFaultsConfiguration {
   std::uint64_t seed = 1;
 };
 
-/// Throws ConfigurationError naming the field, its value and what was expected, for an arm of so many joints.
-void validate(const JointStateFaultsConfiguration& configuration, std::size_t joints);
+/// Throws ConfigurationError naming the field, its value and what was expected, for an arm of these joints.
+void validate(const JointStateFaultsConfiguration& configuration, const std::vector<std::string>& joints);
 
 /// A message to be sent.
 struct JointStateMessage {
