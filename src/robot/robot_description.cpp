@@ -171,6 +171,13 @@ RobotDescription describeTree(const ParsedUrdf& parsed, const DescriptionOptions
     }
     if (!locked.isArmJoint(*joint)) continue;
     ArmJoint arm_joint = readArmJoint(*joint);
+    if (arm_joint.lower == arm_joint.upper) {
+      const bool turns = arm_joint.type == JointType::revolute;
+      description.warnings.push_back("joint '" + joint->name + "' cannot move, its limits are " +
+                                     print(arm_joint.lower) + " to " + print(arm_joint.upper) +
+                                     (turns ? " rad" : " m") + "; give <limit> lower and upper" +
+                                     (turns ? ", or the joint the type continuous if it turns without end" : ""));
+    }
     arm_joint.X_parent_joint = std::exchange(X_body_link, Eigen::Isometry3d::Identity());
     const std::size_t next = description.joints.size() + 1;
     arm_joint.body = lumpedBody(linksMovingWith(findLink(model, arm_joint.link),

@@ -5,6 +5,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
+#include <array>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -97,6 +98,12 @@ bool makesTheRobot(const std::string& element) {
 void refuseWhatIsNoUrdf(const std::string& xml) {
   constexpr int kDeepest = 100;     // the XML parser calls itself for each level
   constexpr int kMostLinks = 5000;  // as urdfdom does for each link when it frees a chain of them
+  const std::size_t declaration = xml.find("<!DOCTYPE");
+  if (declaration < xml.find("<robot") && xml[std::min(xml.find_first_of("[>", declaration), xml.size() - 1)] == '[') {
+    throw ModelError(
+        "the URDF declares entities in its <!DOCTYPE [...]>, which readers of URDF do not know; remove the "
+        "declaration and write out what it stands for");
+  }
   int depth = 0, links = 0;
   XmlTags tags(xml);
   while (const std::optional<XmlTag> tag = tags.next()) {
@@ -123,6 +130,21 @@ void refuseWhatIsNoUrdf(const std::string& xml) {
   }
 }
 
+/// urdfdom's words for a joint without <limit> do not say what to do about it.
+std::string saidClearly(const std::string& text) {
+  const std::string begin = "Joint [";
+  for (const auto& [end, type, unit, else_] :
+       {std::array<std::string, 4>{"] is of type REVOLUTE but it does not specify limits", "revolute", "rad",
+                                   "; if it turns without end, its type is continuous"},
+        std::array<std::string, 4>{"] is of type PRISMATIC without limits", "prismatic", "m", ""}}) {
+    const std::size_t at = text.find(end);
+    if (text.compare(0, begin.size(), begin) != 0 || at == std::string::npos) continue;
+    return "joint '" + text.substr(begin.size(), at - begin.size()) + "' is " + type +
+           " and has no <limit>, expected one with lower and upper [" + unit + "], velocity and effort" + else_;
+  }
+  return "not a valid URDF: " + text;
+}
+
 /// Links own their children. Before they are freed each must let go of its own: a loop of them would own itself for
 /// ever, and a long chain would be freed by as many calls within calls.
 urdf::ModelInterfaceSharedPtr freedLinkByLink(const urdf::ModelInterfaceSharedPtr& model) {
@@ -145,7 +167,7 @@ ParsedUrdf parseUrdf(const std::string& xml) {
     } catch (const std::exception& error) {  // urdfdom lets some conversions throw
       thrown = error.what();
     }
-    if (!parsed.model) throw ModelError("not a valid URDF: " + (thrown.empty() ? console.summary() : thrown));
+    if (!parsed.model) throw ModelError(saidClearly(thrown.empty() ? console.summary() : thrown));
     parsed.model = freedLinkByLink(parsed.model);
     parsed.unread_inertia = console.unreadInertia();
   }

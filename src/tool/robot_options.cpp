@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <iostream>
 
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
@@ -37,7 +38,9 @@ RobotDescription describeRobot(const RobotOptions& options) {
                                " [rad or m]; expected once per joint");
     }
   }
-  return describeRobotFile(options.urdf, description);
+  RobotDescription robot = describeRobotFile(options.urdf, description);
+  for (const std::string& warning : robot.warnings) std::cerr << "warning: " << warning << '\n';
+  return robot;
 }
 
 }  // namespace demo_logger

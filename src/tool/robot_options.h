@@ -19,6 +19,7 @@ struct RobotOptions {
 /// Declares them; --urdf is required.
 void addRobotOptions(CLI::App& verb, RobotOptions& options);
 
+/// What is doubtful about the description goes to standard error.
 /// Throws ConfigurationError for an --at that is not JOINT=VALUE, ModelError or FileError for the description.
 RobotDescription describeRobot(const RobotOptions& options);
 

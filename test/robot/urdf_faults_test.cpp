@@ -41,6 +41,32 @@ std::string simpleArm(const std::string& type, const std::string& in_joint, cons
          "'><parent link='base'/><child link='hand'/>" + in_joint + "</joint>" + beside + "</robot>";
 }
 
+TEST(UrdfFaultsTest, AJointWithoutARangeIsDoubtful) {
+  const auto warningsOf = [](const std::string& type, const std::string& limit) {
+    return describeRobot(simpleArm(type, limit), {}).warnings;
+  };
+  const std::string no_range = "<limit velocity='1' effort='1'/>";
+  EXPECT_EQ(warningsOf("revolute", no_range),
+            (std::vector<std::string>{"robot description: joint 'j1' cannot move, its limits are 0 to 0 rad; give "
+                                      "<limit> lower and upper, or the joint the type continuous if it turns without "
+                                      "end"}));
+  EXPECT_EQ(warningsOf("prismatic", "<limit lower='0.2' upper='0.2' velocity='1' effort='1'/>"),
+            (std::vector<std::string>{"robot description: joint 'j1' cannot move, its limits are 0.2 to 0.2 m; give "
+                                      "<limit> lower and upper"}));
+  EXPECT_EQ(warningsOf("continuous", no_range), std::vector<std::string>{});
+  EXPECT_EQ(warningsOf("revolute", kLimit), std::vector<std::string>{});
+}
+
+TEST(UrdfFaultsTest, ADoctypeIsPassedOverButNotItsEntities) {
+  const std::string arm = simpleArm("revolute", kLimit);
+  EXPECT_EQ(faultOf("<?xml version='1.0'?>\n<!DOCTYPE robot>\n" + arm), "no error");
+  EXPECT_EQ(faultOf("<?xml version='1.0'?>\n<!DOCTYPE robot [<!ENTITY reach '0.3'>]>\n" + arm),
+            "robot description: the URDF declares entities in its <!DOCTYPE [...]>, which readers of URDF do not know; "
+            "remove the declaration and write out what it stands for");
+  EXPECT_EQ(faultOf("<!DOCTYPE robot"),
+            "robot description: not a valid URDF: Could not find the 'robot' element in the xml file");
+}
+
 TEST(UrdfFaultsTest, AFileThatIsNotThereOrNotAFile) {
   EXPECT_EQ(sentenceOf([] { describeRobotFile("/nonexistent/arm.urdf", {}); }),
             "/nonexistent/arm.urdf: no such file, expected a robot description (URDF)");
@@ -143,7 +169,11 @@ TEST(UrdfFaultsTest, LimitsThatAreSwappedMissingNegativeOrEmpty) {
   EXPECT_EQ(faultOf(simpleArm("prismatic", "<limit lower='2' upper='-1.5' velocity='1' effort='1'/>")),
             "robot description: joint 'j1' has its limits swapped: lower 2, upper -1.5 m");
   EXPECT_EQ(faultOf(simpleArm("revolute", "")),
-            "robot description: not a valid URDF: Joint [j1] is of type REVOLUTE but it does not specify limits");
+            "robot description: joint 'j1' is revolute and has no <limit>, expected one with lower and upper [rad], "
+            "velocity and effort; if it turns without end, its type is continuous");
+  EXPECT_EQ(faultOf(simpleArm("prismatic", "")),
+            "robot description: joint 'j1' is prismatic and has no <limit>, expected one with lower and upper [m], "
+            "velocity and effort");
   EXPECT_EQ(
       faultOf(simpleArm("revolute", "<limit lower='-1' upper='1' effort='1'/>")),
       "robot description: not a valid URDF: joint limit: no velocity; Could not parse limit element for joint [j1]");

@@ -50,7 +50,8 @@ struct RobotDescription {
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  // [m/s²] in the base frame: −z of the URDF root
   bool has_inertia = false;                  // every moving body has mass properties that one can compute with
   std::string inertia_fault;                 // why not, in one sentence; empty with has_inertia
-  std::vector<std::string> warnings;         // what is doubtful though usable, a sentence each: inertias no body has
+  std::vector<std::string> warnings;         // what is doubtful though usable, a sentence each: inertias that no body
+                                             // has, joints without a range
 
   std::vector<std::string> jointNames() const;
 };
