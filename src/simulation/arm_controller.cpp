@@ -51,6 +51,12 @@ void validate(const ArmControllerConfiguration& c) {
 
 namespace {
 
+std::vector<bool> slidingJoints(const RobotDescription& description) {
+  std::vector<bool> slides;
+  for (const ArmJoint& joint : description.joints) slides.push_back(joint.type == JointType::prismatic);
+  return slides;
+}
+
 /// The velocity [rad/s or m/s] that takes back `error` [rad or m]: in proportion when it is small, and so that the arm
 /// can brake in time when it is not. It leaves a part of the deceleration in hand.
 double approachVelocity(double error, const ArmControllerConfiguration& configuration) {
@@ -70,7 +76,7 @@ class ArmController::Implementation {
         mode_(mode),
         model_(std::move(description)),
         gate_({model_.description().jointNames(), model_.description().base, model_.description().tip,
-               configuration.command_timeout}),
+               configuration.command_timeout, slidingJoints(model_.description())}),
         follower_(model_.description().joints, configuration.max_acceleration),
         reference_(model_.description().joints, configuration),
         servo_(model_, configuration),
@@ -133,8 +139,11 @@ class ArmController::Implementation {
     snapshot.part("path", [&](Snapshot& inside) { follower_.exchange(inside); });
     snapshot.part("reference", [&](Snapshot& inside) { reference_.exchange(inside); });
     snapshot.part("compliance", [&](Snapshot& inside) { compliance_.exchange(inside); });
-    snapshot.value("torque", torque_);
-    snapshot.value("refused", refused_);
+    snapshot.valueOrNone("torque", torque_);
+    snapshot.count("refused", refused_, Snapshot::kMostCounted);
+    if (snapshot.reading() && gate_.holdsAnother(mode_)) {
+      Snapshot::refuse("gate", "holds a command for another mode than " + mode);
+    }
   }
 
   const ArmControllerConfiguration& configuration() const { return configuration_; }

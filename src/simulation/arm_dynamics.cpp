@@ -126,6 +126,11 @@ void ArmDynamics::addExternalTorque(const std::vector<LinkWrench>& wrenches, Eig
   }
 }
 
+std::vector<Contact> ArmDynamics::overlaps(const Eigen::VectorXd& q) {
+  chain_.place(q);
+  return finder_.overlaps(chain_);
+}
+
 Eigen::VectorXd ArmDynamics::externalTorque(const Eigen::VectorXd& q, const std::vector<LinkWrench>& wrenches) {
   Eigen::VectorXd torque = Eigen::VectorXd::Zero(chain_.size());
   chain_.place(q);

@@ -36,6 +36,7 @@ class ArmDynamics {
   /// Between gears and links, mean over the last step [N m or N].
   const Eigen::VectorXd& linkTorque() const { return link_torque_; }
   const std::vector<Contact>& contacts() const { return contacts_; }
+  std::vector<Contact> overlaps(const Eigen::VectorXd& q);
 
   /// q̈ under `torque` and gravity alone.
   Eigen::VectorXd acceleration(const ArmState& state, const Eigen::VectorXd& torque);

@@ -141,6 +141,10 @@ const Eigen::VectorXd& BulletArm::linkTorque() const { return implementation_->l
 
 const std::vector<Contact>& BulletArm::contacts() const { return implementation_->contacts; }
 
+std::vector<Contact> BulletArm::overlaps() const {
+  return implementation_->dynamics->overlaps(implementation_->state.q);
+}
+
 Eigen::VectorXd BulletArm::externalTorque(const std::vector<LinkWrench>& wrenches) const {
   return implementation_->dynamics->externalTorque(implementation_->state.q, wrenches);
 }

@@ -1,6 +1,7 @@
 #include "demo_logger/simulation/command_gate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -15,7 +16,7 @@ namespace {
 constexpr double kLargestValue = 1e6;  // no arm moves or pushes like that; keeps the arithmetic finite
 constexpr std::size_t kMostPoints = 10000;
 constexpr std::size_t kMostSources = 16;  // publishers whose clocks are remembered
-const char* const kTwistComponents = "vx vy vz wx wy wz";
+constexpr std::array<const char*, 6> kTwistComponents = {"vx", "vy", "vz", "wx", "wy", "wz"};
 
 const std::vector<std::pair<ControlMode, std::string>>& modeNames() {
   static const std::vector<std::pair<ControlMode, std::string>> names{
@@ -29,18 +30,36 @@ const std::vector<std::pair<ControlMode, std::string>>& modeNames() {
   return names;
 }
 
-std::string checkNumbers(const Eigen::VectorXd& values) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    const std::string component = "component " + std::to_string(i) + " of the command is ";
-    if (!std::isfinite(values[i])) return component + "not a number";
-    if (std::abs(values[i]) > kLargestValue) return component + print(values[i]) + ", beyond what any arm does";
-  }
-  return "";
+/// Empty if `value` is one that an arm may be told.
+std::string checkNumber(const std::string& name, const std::string& what, double value, const std::string& unit) {
+  if (std::abs(value) <= kLargestValue) return "";
+  return name + " in " + what + " is " + print(value) + " " + unit + ", expected at most " + print(kLargestValue) +
+         " " + unit + " either way";
+}
+
+/// A command that is no danger when it is old: it says where the arm comes to rest.
+bool boundsItself(const ArmCommand& command) {
+  if (command.mode == ControlMode::trajectory) return true;
+  return command.mode == ControlMode::position && (command.rates.size() == 0 || command.rates.isZero(0.0));
 }
 
 std::string printDuration(Nanoseconds duration) { return print(toSeconds(duration)) + " s"; }
 
 }  // namespace
+
+/// Of a joint that turns and of one that slides.
+struct CommandGate::Units {
+  const char* turning;
+  const char* sliding;
+
+  static Units of(ControlMode mode) {
+    if (mode == ControlMode::effort) return {"N m", "N"};
+    return mode == ControlMode::velocity ? velocity() : position();
+  }
+  static Units position() { return {"rad", "m"}; }
+  static Units velocity() { return {"rad/s", "m/s"}; }
+  static Units acceleration() { return {"rad/s2", "m/s2"}; }
+};
 
 std::string toString(ControlMode mode) {
   for (const auto& [value, name] : modeNames()) {
@@ -81,7 +100,7 @@ std::string CommandGate::admit(const ArmCommand& command, ControlMode mode, Nano
 
 std::string CommandGate::checkValues(const ArmCommand& command, ArmCommand& sorted) const {
   if (command.mode == ControlMode::cartesian_velocity) return checkTwist(command);
-  const std::string what = "a " + toString(command.mode) + " command";
+  const std::string what = (command.mode == ControlMode::effort ? "an " : "a ") + toString(command.mode) + " command";
   std::string refusal;
   if (command.mode != ControlMode::trajectory) refusal = checkSize(what, command.values, command.names.size());
   std::vector<Eigen::Index> order;
@@ -89,9 +108,9 @@ std::string CommandGate::checkValues(const ArmCommand& command, ArmCommand& sort
   if (!refusal.empty()) return refusal;
   sorted.names.clear();
   if (command.mode != ControlMode::trajectory) {
-    refusal = sort(what, order, sorted.values);
+    refusal = sort(what, Units::of(command.mode), order, sorted.values);
     if (!refusal.empty() || command.rates.size() == 0) return refusal;
-    return sort("the velocity of " + what, order, sorted.rates);
+    return sort("the velocity of " + what, Units::velocity(), order, sorted.rates);
   }
   if (command.path.size() > kMostPoints) {
     return "a path has " + std::to_string(command.path.size()) + " points, expected at most " +
@@ -100,9 +119,13 @@ std::string CommandGate::checkValues(const ArmCommand& command, ArmCommand& sort
   for (std::size_t i = 0; i < sorted.path.size(); ++i) {
     PathPoint& point = sorted.path[i];
     const std::string where = "point " + std::to_string(i + 1) + " of a path";
-    refusal = sort(where, order, point.q);
-    if (refusal.empty() && point.dq.size() > 0) refusal = sort("the velocity at " + where, order, point.dq);
-    if (refusal.empty() && point.ddq.size() > 0) refusal = sort("the acceleration at " + where, order, point.ddq);
+    refusal = sort(where, Units::position(), order, point.q);
+    if (refusal.empty() && point.dq.size() > 0) {
+      refusal = sort("the velocity at " + where, Units::velocity(), order, point.dq);
+    }
+    if (refusal.empty() && point.ddq.size() > 0) {
+      refusal = sort("the acceleration at " + where, Units::acceleration(), order, point.ddq);
+    }
     if (!refusal.empty()) return refusal;
   }
   return "";
@@ -110,14 +133,19 @@ std::string CommandGate::checkValues(const ArmCommand& command, ArmCommand& sort
 
 std::string CommandGate::checkTwist(const ArmCommand& command) const {
   if (command.values.size() != 6 || (!command.names.empty() && command.names.size() != 6)) {
-    return "a cartesian_velocity command has " + std::to_string(command.values.size()) + " values, expected " +
-           kTwistComponents;
+    return "a cartesian_velocity command has " + std::to_string(command.values.size()) +
+           " values, expected vx vy vz wx wy wz";
   }
   if (!command.frame.empty() && command.frame != configuration_.base && command.frame != configuration_.tip) {
     return "a twist is given in the frame \"" + command.frame + "\", expected \"" + configuration_.base + "\" or \"" +
            configuration_.tip + "\"";
   }
-  return checkNumbers(command.values);
+  for (std::size_t i = 0; i < kTwistComponents.size(); ++i) {
+    std::string refusal = checkNumber(kTwistComponents.at(i), "a cartesian_velocity command",
+                                      command.values[static_cast<Eigen::Index>(i)], i < 3 ? "m/s" : "rad/s");
+    if (!refusal.empty()) return refusal;
+  }
+  return "";
 }
 
 /// Fills `order`: where each named value belongs in the arm.
@@ -146,10 +174,14 @@ std::string CommandGate::checkSize(const std::string& what, const Eigen::VectorX
 }
 
 /// Brings `values` into the arm's order, if they are sound.
-std::string CommandGate::sort(const std::string& what, const std::vector<Eigen::Index>& order,
+std::string CommandGate::sort(const std::string& what, const Units& units, const std::vector<Eigen::Index>& order,
                               Eigen::VectorXd& values) const {
   std::string refusal = checkSize(what, values, order.size());
-  if (refusal.empty()) refusal = checkNumbers(values);
+  for (Eigen::Index i = 0; refusal.empty() && i < values.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(order.empty() ? i : order[static_cast<std::size_t>(i)]);
+    const bool slides = joint < configuration_.slides.size() && configuration_.slides[joint];
+    refusal = checkNumber(configuration_.joints[joint], what, values[i], slides ? units.sliding : units.turning);
+  }
   if (!refusal.empty() || order.empty()) return refusal;
   const Eigen::VectorXd given = values;
   for (std::size_t i = 0; i < order.size(); ++i) values[order[i]] = given[static_cast<Eigen::Index>(i)];
@@ -187,7 +219,7 @@ std::string CommandGate::checkStamp(const ArmCommand& command, Nanoseconds now) 
 
 const ArmCommand* CommandGate::inForce(Nanoseconds now) {
   if (!command_) return nullptr;
-  if (command_->mode == ControlMode::trajectory) return &*command_;  // has a duration of its own
+  if (boundsItself(*command_)) return &*command_;
   const Nanoseconds timeout = fromSeconds(configuration_.timeout);
   if (now - receipt_ > timeout) {
     clear("no command for " + print(configuration_.timeout) + " s");
@@ -217,6 +249,7 @@ void CommandGate::exchange(Snapshot& snapshot) {
   std::vector<std::string> sources;
   for (const auto& clock : clocks_) sources.push_back(clock.first);
   snapshot.value("sources", sources);
+  if (sources.size() > kMostSources) Snapshot::refuse("sources", "are more than an arm remembers");
   snapshot.part("clocks", [&](Snapshot& inside) {
     if (inside.reading()) clocks_.clear();
     for (const std::string& source : sources) {

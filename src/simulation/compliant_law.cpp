@@ -32,13 +32,14 @@ Eigen::VectorXd CompliantLaw::torque(const RobotModel& model, const ArmState& st
 }
 
 void CompliantLaw::exchange(Snapshot& snapshot) {
-  snapshot.value("stiffness", gains_.stiffness);
-  snapshot.value("damping", gains_.damping);
-  snapshot.value("reference", q_ref_);
-  snapshot.value("before", before_);
-  snapshot.value("excess", excess_);
-  snapshot.value("fading_ticks", fading_ticks_);
-  snapshot.value("faded_ticks", faded_ticks_);
+  constexpr std::uint64_t kMostTicks = 1'000'000;
+  snapshot.valueOrNone("stiffness", gains_.stiffness);
+  snapshot.valueOrNone("damping", gains_.damping);
+  snapshot.valueOrNone("reference", q_ref_);
+  snapshot.valueOrNone("before", before_);
+  snapshot.valueOrNone("excess", excess_);
+  snapshot.count("fading_ticks", fading_ticks_, kMostTicks);
+  snapshot.count("faded_ticks", faded_ticks_, kMostTicks);
 }
 
 }  // namespace demo_logger

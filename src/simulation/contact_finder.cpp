@@ -17,6 +17,7 @@ namespace {
 constexpr double kReach = 0.005;           // [m] no link comes so far within a step of a quarter of a millisecond
 constexpr double kMargin = 1e-4;           // [m] by which Bullet rounds edges
 constexpr std::size_t kMostContacts = 12;  // a rigid chain is held by fewer
+constexpr double kTouching = 1e-6;         // [m]
 constexpr double kRodRadius = 0.04;        // [m] of a link without a shape
 
 btVector3 toBullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -99,10 +100,12 @@ std::vector<Eigen::Vector3d> lowPoints(const CollisionShape& shape, const Eigen:
   return points;
 }
 
+bool isDeeper(const Contact& a, const Contact& b) { return a.distance < b.distance; }
+
 class PairResult : public btCollisionWorld::ContactResultCallback {
  public:
-  PairResult(int joint, const btCollisionObject& solid, std::vector<Contact>& contacts)
-      : joint_(joint), solid_(solid), contacts_(contacts) {
+  PairResult(int joint, int obstacle, const btCollisionObject& solid, std::vector<Contact>& contacts)
+      : joint_(joint), obstacle_(obstacle), solid_(solid), contacts_(contacts) {
     m_closestDistanceThreshold = kReach;
   }
 
@@ -115,12 +118,14 @@ class PairResult : public btCollisionWorld::ContactResultCallback {
     contact.point = toEigen(solid_is_first ? point.getPositionWorldOnA() : point.getPositionWorldOnB());
     contact.normal = (solid_is_first ? 1.0 : -1.0) * toEigen(point.m_normalWorldOnB);
     contact.distance = point.getDistance();
+    contact.obstacle = obstacle_;
     contacts_.push_back(contact);
     return 0.0;
   }
 
  private:
   int joint_;
+  int obstacle_;
   const btCollisionObject& solid_;
   std::vector<Contact>& contacts_;
 };
@@ -166,33 +171,51 @@ void ContactFinder::addLinks(const RobotDescription& description, const Surround
 }
 
 void ContactFinder::find(const MovingChain& chain, std::vector<Contact>& contacts) {
+  findAll(chain, contacts);
+  std::stable_sort(contacts.begin(), contacts.end(), isDeeper);
+  if (contacts.size() > kMostContacts) contacts.resize(kMostContacts);
+}
+
+std::vector<Contact> ContactFinder::overlaps(const MovingChain& chain) {
+  std::vector<Contact> contacts, overlaps;
+  findAll(chain, contacts);
+  std::stable_sort(contacts.begin(), contacts.end(), isDeeper);
+  for (const Contact& contact : contacts) {
+    if (contact.distance > kTouching) break;
+    const bool known = std::any_of(overlaps.begin(), overlaps.end(), [&](const Contact& other) {
+      return other.joint == contact.joint && other.obstacle == contact.obstacle;
+    });
+    if (!known) overlaps.push_back(contact);
+  }
+  return overlaps;
+}
+
+void ContactFinder::findAll(const MovingChain& chain, std::vector<Contact>& contacts) {
   for (const Solid& solid : links_) {
     const Eigen::Isometry3d pose = chain.pose(solid.joint) * solid.shape.pose;
     if (floor_ && pose.translation().z() - *floor_ < solid.radius + kReach) findOnFloor(solid, pose, contacts);
     bool placed = false;
-    for (const Solid& obstacle : obstacles_) {
+    for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+      const Solid& obstacle = obstacles_[i];
       const double between = (pose.translation() - obstacle.shape.pose.translation()).norm();
       if (between > solid.radius + obstacle.radius + kReach) continue;
       if (!std::exchange(placed, true)) solid.object->setWorldTransform(toBullet(pose));
-      findOn(obstacle, solid, contacts);
+      findOn(static_cast<int>(i), solid, contacts);
     }
   }
-  std::stable_sort(contacts.begin(), contacts.end(),
-                   [](const Contact& a, const Contact& b) { return a.distance < b.distance; });
-  if (contacts.size() > kMostContacts) contacts.resize(kMostContacts);
 }
 
 void ContactFinder::findOnFloor(const Solid& solid, const Eigen::Isometry3d& pose,
                                 std::vector<Contact>& contacts) const {
   for (const Eigen::Vector3d& point : lowPoints(solid.shape, pose)) {
     const double distance = point.z() - *floor_;
-    if (distance < kReach) contacts.push_back({solid.joint, point, Eigen::Vector3d::UnitZ(), distance, 0.0});
+    if (distance < kReach) contacts.push_back({solid.joint, point, Eigen::Vector3d::UnitZ(), distance, 0.0, -1});
   }
 }
 
-void ContactFinder::findOn(const Solid& obstacle, const Solid& solid, std::vector<Contact>& contacts) {
-  PairResult result(solid.joint, *solid.object, contacts);
-  world_.contactPairTest(solid.object.get(), obstacle.object.get(), result);
+void ContactFinder::findOn(int obstacle, const Solid& solid, std::vector<Contact>& contacts) {
+  PairResult result(solid.joint, obstacle, *solid.object, contacts);
+  world_.contactPairTest(solid.object.get(), obstacles_[static_cast<std::size_t>(obstacle)].object.get(), result);
 }
 
 }  // namespace demo_logger

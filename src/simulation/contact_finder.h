@@ -28,6 +28,9 @@ class ContactFinder {
   /// Adds to `contacts`, deepest first and the most important ones only.
   void find(const MovingChain& chain, std::vector<Contact>& contacts);
 
+  /// What touches or overlaps, the deepest contact of each link and obstacle.
+  std::vector<Contact> overlaps(const MovingChain& chain);
+
  private:
   struct Solid {
     int joint;  // whose link it moves with
@@ -38,8 +41,9 @@ class ContactFinder {
   };
   static Solid makeSolid(int joint, const CollisionShape& shape);
   void addLinks(const RobotDescription& description, const Surroundings& surroundings);
+  void findAll(const MovingChain& chain, std::vector<Contact>& contacts);
   void findOnFloor(const Solid& solid, const Eigen::Isometry3d& pose, std::vector<Contact>& contacts) const;
-  void findOn(const Solid& obstacle, const Solid& solid, std::vector<Contact>& contacts);
+  void findOn(int obstacle, const Solid& solid, std::vector<Contact>& contacts);
 
   std::optional<double> floor_;
   std::vector<Solid> links_;

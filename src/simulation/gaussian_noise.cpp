@@ -29,8 +29,15 @@ void GaussianNoise::exchange(Snapshot& snapshot) {
   numbers << generator_;
   std::string text = numbers.str();
   snapshot.value("generator", text);
-  numbers.str(text);
-  numbers >> generator_;
+  if (!snapshot.reading()) return;
+  constexpr std::size_t kLongest = 312 * 21 + 10;  // the numbers of this generator, and how many are used
+  std::mt19937_64 generator;
+  if (text.size() <= kLongest) numbers.str(text);
+  if (text.size() > kLongest || !(numbers >> generator)) {
+    Snapshot::refuse("generator", "of " + std::to_string(text.size()) +
+                                      " characters is not the text of a std::mt19937_64, which is 312 numbers and one");
+  }
+  generator_ = generator;
 }
 
 }  // namespace demo_logger

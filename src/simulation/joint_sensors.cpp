@@ -73,8 +73,8 @@ Eigen::VectorXd JointSensors::differenced(const Eigen::VectorXd& q) {
 
 void JointSensors::exchange(Snapshot& snapshot) {
   noise_.exchange(snapshot);
-  snapshot.value("positions", before_);
-  snapshot.value("velocities", velocity_);
+  snapshot.valueOrNone("positions", before_);
+  snapshot.valueOrNone("velocities", velocity_);
 }
 
 Eigen::VectorXd JointSensors::disturbed(const Eigen::VectorXd& truth, double deviation) {

@@ -96,11 +96,18 @@ void PathFollower::clear() {
 }
 
 void PathFollower::exchange(Snapshot& snapshot) {
-  const auto exchangeTimed = [](Snapshot& inside, Timed& timed) {
+  const auto exchangeTimed = [this](Snapshot& inside, Timed& timed) {
     std::vector<PathPoint> points = timed.path.points();
     inside.path("points", points);
+    const auto not_later = [](const PathPoint& a, const PathPoint& b) { return !(b.time > a.time); };
+    if (points.empty() || std::adjacent_find(points.begin(), points.end(), not_later) != points.end()) {
+      Snapshot::refuse("points", "are no path, expected at least one, and times that increase");
+    }
     timed.path = JointPath(std::move(points));
     inside.stamp("start", timed.start);
+    if (!inside.reading()) return;
+    const std::string fault = timed.path.fault(joints_, max_acceleration_);
+    if (!fault.empty()) Snapshot::refuse("points", "are no path: " + fault);
   };
   snapshot.optional("active", active_, exchangeTimed);
   snapshot.optional("waiting", waiting_, exchangeTimed);

@@ -38,8 +38,8 @@ void PublisherClock::observe(Nanoseconds stamp, Nanoseconds receipt) {
 void PublisherClock::exchange(Snapshot& snapshot) {
   snapshot.value("delays", delays_);
   snapshot.stamp("first_receipt", first_receipt_);
-  snapshot.optional("offset", offset_, [](Snapshot& inside, Nanoseconds& offset) { inside.value("ns", offset); });
-  snapshot.value("from_the_future", from_the_future_);
+  snapshot.optional("offset", offset_, [](Snapshot& inside, Nanoseconds& offset) { inside.duration("ns", offset); });
+  snapshot.count("from_the_future", from_the_future_, kFewest);
 }
 
 }  // namespace demo_logger

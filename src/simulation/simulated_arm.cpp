@@ -92,7 +92,6 @@ std::string whyNotApplied(const LinkWrench& wrench) {
 }
 
 std::string SimulatedArm::applyWrench(const LinkWrench& wrench, Nanoseconds until, const std::string& source) {
-  constexpr std::size_t kMost = 32;
   std::string refusal = whyNotApplied(wrench);
   if (!refusal.empty()) return refusal;
   if (wrench.joint >= static_cast<int>(description_.joints.size())) {
@@ -104,11 +103,26 @@ std::string SimulatedArm::applyWrench(const LinkWrench& wrench, Nanoseconds unti
     *same = {wrench, until, source};
     return "";
   }
-  if (wrenches_.size() >= kMost) {
-    return "more than " + std::to_string(kMost) + " wrenches would act at once; wait until some have ended";
+  if (wrenches_.size() >= kMostWrenches) {
+    return "more than " + std::to_string(kMostWrenches) + " wrenches would act at once; wait until some have ended";
   }
   wrenches_.push_back({wrench, until, source});
   return "";
+}
+
+std::vector<std::string> SimulatedArm::overlaps() const {
+  constexpr double kVisible = 1e-5;  // [m]
+  std::vector<std::string> sentences;
+  for (const Contact& contact : body_.overlaps()) {
+    const std::string& link = description_.joints[static_cast<std::size_t>(contact.joint)].link;
+    const std::string obstacle =
+        contact.obstacle < 0 ? "the floor" : "obstacles[" + std::to_string(contact.obstacle) + "]";
+    const double depth = -contact.distance;
+    sentences.push_back(link + (depth < kVisible ? " touches " : " is " + print(1e3 * depth, 1) + " mm inside ") +
+                        obstacle +
+                        ", which pushes it out; move that, or let the arm start elsewhere (initial_position).");
+  }
+  return sentences;
 }
 
 void SimulatedArm::refuse(const std::string& source, const std::string& why) {

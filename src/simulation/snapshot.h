@@ -14,17 +14,23 @@ namespace demo_logger {
 
 /// Everything that an object remembers, field by field, on its way into JSON or back. One function of the object,
 /// exchange(Snapshot&), serves both ways, so that they cannot disagree. Numbers come back bit by bit.
-/// Reading throws ConfigurationError naming the field that is missing or of another type. Stamps that are read are
-/// moved by `shift`, to a clock that shows another time.
+/// Reading throws ConfigurationError naming the field that is missing, of another type or size, or beyond what the
+/// arm could have saved: a file may have been edited, or cut. Stamps that are read are moved by `shift`, to a clock
+/// that shows another time.
 class Snapshot {
  public:
+  /// Ticks, refusals and the like: what a double counts exactly.
+  static constexpr std::uint64_t kMostCounted = std::uint64_t{1} << 53U;
+
   Snapshot() : json_(nlohmann::ordered_json::object()) {}
-  Snapshot(nlohmann::ordered_json json, Nanoseconds shift) : reading_(true), shift_(shift), json_(std::move(json)) {}
+  /// Of an arm with so many joints.
+  Snapshot(nlohmann::ordered_json json, Nanoseconds shift, Eigen::Index joints)
+      : reading_(true), shift_(shift), joints_(joints), json_(std::move(json)) {}
 
   bool reading() const { return reading_; }
   const nlohmann::ordered_json& json() const { return json_; }
 
-  /// Numbers, texts and flags.
+  /// Numbers, texts and flags, and lists of them. For whole numbers see count().
   template <typename Value>
   void value(const std::string& key, Value& value) {
     if (reading_) {
@@ -33,7 +39,23 @@ class Snapshot {
       json_[key] = value;
     }
   }
-  void value(const std::string& key, Eigen::VectorXd& vector);
+  /// A whole number from 0 to `most`.
+  template <typename Value>
+  void count(const std::string& key, Value& value, std::uint64_t most) {
+    if (reading_) {
+      value = static_cast<Value>(readCount(key, most));
+    } else {
+      json_[key] = value;
+    }
+  }
+  /// One number for each joint.
+  void value(const std::string& key, Eigen::VectorXd& vector) { values(key, vector, {joints_}); }
+  /// Or none at all.
+  void valueOrNone(const std::string& key, Eigen::VectorXd& vector) { values(key, vector, {joints_, 0}); }
+  /// As many as one of `sizes`.
+  void values(const std::string& key, Eigen::VectorXd& vector, const std::vector<Eigen::Index>& sizes);
+  /// A time between two stamps, which stays as it is.
+  void duration(const std::string& key, Nanoseconds& duration);
   /// A point in time, which is moved; 0 means none and stays.
   void stamp(const std::string& key, Nanoseconds& stamp);
   void command(const std::string& key, ArmCommand& command);
@@ -42,7 +64,7 @@ class Snapshot {
   /// An object inside: `exchange` is called with a Snapshot of its own.
   template <typename Exchange>
   void part(const std::string& key, Exchange exchange) {
-    Snapshot inside = reading_ ? Snapshot(at(key), shift_) : Snapshot();
+    Snapshot inside = reading_ ? Snapshot(at(key), shift_, joints_) : Snapshot();
     exchange(inside);
     if (!reading_) json_[key] = inside.json_;
   }
@@ -60,9 +82,14 @@ class Snapshot {
     part(key, [&](Snapshot& inside) { exchange(inside, *value); });
   }
 
+  /// `why` the value that was read for `key` cannot be one: "\"ticks\" is -1, expected …".
+  [[noreturn]] static void refuse(const std::string& key, const std::string& why);
+  Eigen::Index joints() const { return joints_; }
+
  private:
   const nlohmann::ordered_json& at(const std::string& key) const;
-  [[noreturn]] static void refuse(const std::string& key, const std::string& why);
+  std::uint64_t readCount(const std::string& key, std::uint64_t most) const;
+  Nanoseconds readNanoseconds(const std::string& key, Nanoseconds least) const;
 
   template <typename Value>
   Value get(const std::string& key) const {
@@ -75,6 +102,7 @@ class Snapshot {
 
   bool reading_ = false;
   Nanoseconds shift_ = 0;
+  Eigen::Index joints_ = 0;
   nlohmann::ordered_json json_;
 };
 

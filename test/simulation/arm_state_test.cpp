@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "demo_logger/simulation/simulated_arm.h"
 #include "demo_logger/trajectory/error.h"
@@ -164,6 +166,65 @@ TEST(ArmStateFileTest, WhatIsNoStateOfThisArmIsRefusedInASentence) {
   EXPECT_EQ(messageOf(other),
             "state of a simulated arm: \"robot\" is \"his_arm\", expected \"demo_arm\", that of this arm.");
   EXPECT_EQ(messageOf(arm.saveState()), "taken");
+}
+
+TEST(ArmStateFileTest, WhatNoArmCouldHaveSavedIsRefusedInASentence) {
+  using Json = nlohmann::ordered_json;
+  SimulatedArm arm(describeDemoArm(), everything(ControlMode::trajectory));
+  for (int k = 0; k < 1000; ++k) tickAt(arm, ControlMode::trajectory, k);
+  const Json sound = Json::parse(arm.saveState());
+  const auto messageOf = [&](const std::string& field, const Json& value, std::optional<Nanoseconds> next = {}) {
+    Json state = sound;
+    state[Json::json_pointer(field)] = value;
+    SimulatedArm restored(describeDemoArm(), everything(ControlMode::trajectory));
+    try {
+      restored.restoreState(state.dump(), next);
+    } catch (const ConfigurationError& error) {
+      return std::string(error.what());
+    }
+    restored.tick(restored.nextTick(), {});
+    return std::string("taken");
+  };
+  const auto sentence = [](const std::string& what) {
+    return "state of a simulated arm: " + what + ". Was it saved by this version, with this configuration?";
+  };
+  EXPECT_EQ(messageOf("/ticks", 7), "taken");
+  for (const Json& ticks : {Json(-1), Json(1.5), Json(1ULL << 60U)}) {
+    EXPECT_EQ(messageOf("/ticks", ticks),
+              sentence("\"ticks\" is " + ticks.dump() + ", expected a whole number from 0 to 9007199254740992"));
+  }
+  for (const std::optional<Nanoseconds> next : {std::optional<Nanoseconds>(), std::optional<Nanoseconds>(kStart)}) {
+    for (const Json& stamp : {Json(-5), Json(1e300), Json(9'000'000'000'000'000'000), Json("soon")}) {
+      EXPECT_EQ(
+          messageOf("/next_tick", stamp, next),
+          sentence("\"next_tick\" is " + stamp.dump() + ", expected a whole number from 0 to 4000000000000000000 ns"));
+    }
+  }
+  EXPECT_EQ(messageOf("/wrenches", 1'000'000'000),
+            sentence("\"wrenches\" is 1000000000, expected a whole number from 0 to 32"));
+  EXPECT_EQ(messageOf("/wrench_0/joint", 7), sentence("\"joint\" of a wrench is 7, none of this arm"));
+  EXPECT_EQ(messageOf("/wrench_0/force", Json::array({1.0, 2.0})), sentence("\"force\" has 2 numbers, expected 3"));
+  EXPECT_EQ(messageOf("/wrench_0/force", Json::array({1e6, 2.0, 0.0})),
+            "state of a simulated arm: the wrench has a component of 1e+06 N or N m, expected at most 10000.");
+  for (const std::string& text : {std::string(), std::string("1 2 3"), std::string(1'000'000, '1')}) {
+    EXPECT_EQ(messageOf("/sensors/generator", text),
+              sentence("\"generator\" of " + std::to_string(text.size()) +
+                       " characters is not the text of a std::mt19937_64, which is 312 numbers and one"));
+  }
+  EXPECT_EQ(messageOf("/body/link_torque", Json::array({1.0})), sentence("\"link_torque\" has 1 numbers, expected 7"));
+  EXPECT_EQ(messageOf("/body/link_torque", Json::array({0, 0, 0, 1e300, 0, 0, 0})),
+            sentence("\"link_torque\" holds 1e+300, expected at most 1e+09 either way, as arms do"));
+  EXPECT_EQ(messageOf("/body/q", Json::array({0, 0, 0, 99, 0, 0, 0})),
+            "state of a simulated arm: simulated robot 'demo_arm': joint 'joint_4' cannot start at 99 rad, expected a "
+            "position from -2.0944 to 2.0944");
+  EXPECT_EQ(messageOf("/controller/reference/velocity", Json::array()),
+            sentence("\"velocity\" has 0 numbers, expected 7"));
+  EXPECT_EQ(messageOf("/controller/mode", "velocity"),
+            sentence("\"gate\" holds a command for another mode than velocity"));
+  EXPECT_EQ(messageOf("/controller/path/active/points/1/time", 0.0),
+            sentence("\"points\" are no path, expected at least one, and times that increase"));
+  EXPECT_EQ(messageOf("/controller/path/active/points/size", 1e9),
+            sentence("\"size\" is 1000000000.0, expected a whole number from 0 to 20000"));
 }
 
 /// Everything that a run decides, mixed into one number.

@@ -12,7 +12,7 @@ namespace {
 constexpr Nanoseconds kMillisecond = 1'000'000;
 constexpr Nanoseconds kNow = 1000 * kNanosecondsPerSecond;
 
-CommandGate makeGate() { return CommandGate({{"shoulder", "elbow"}, "base", "tool", /*timeout=*/0.5}); }
+CommandGate makeGate() { return CommandGate({{"shoulder", "elbow"}, "base", "tool", /*timeout=*/0.5, /*slides=*/{}}); }
 
 ArmCommand makeVelocity(double shoulder, double elbow) {
   ArmCommand command;
@@ -56,10 +56,16 @@ TEST(CommandGateTest, NamedValuesAreSortedIntoTheOrderOfTheArm) {
 TEST(CommandGateTest, WhatIsMalformedIsRefusedInWords) {
   CommandGate gate = makeGate();
   ArmCommand command = makeVelocity(0.1, std::numeric_limits<double>::quiet_NaN());
-  EXPECT_EQ(admit(gate, command), "component 1 of the command is not a number");
+  EXPECT_EQ(admit(gate, command), "elbow in a velocity command is nan rad/s, expected at most 1e+06 rad/s either way");
 
   command = makeVelocity(1e300, 0.0);
-  EXPECT_EQ(admit(gate, command), "component 0 of the command is 1e+300, beyond what any arm does");
+  EXPECT_EQ(admit(gate, command),
+            "shoulder in a velocity command is 1e+300 rad/s, expected at most 1e+06 rad/s either way");
+  command.names = {"elbow", "shoulder"};
+  EXPECT_EQ(admit(gate, command),
+            "elbow in a velocity command is 1e+300 rad/s, expected at most 1e+06 rad/s either way")
+      << "the joint is the one that was named";
+  command.names.clear();
 
   command.values = Eigen::Vector3d::Zero();
   EXPECT_EQ(admit(gate, command), "a velocity command has 3 values, expected 2, one for each joint");
@@ -81,7 +87,46 @@ TEST(CommandGateTest, WhatIsMalformedIsRefusedInWords) {
   command.values = Eigen::Vector3d::Zero();
   EXPECT_EQ(admit(gate, command), "a cartesian_velocity command has 3 values, expected vx vy vz wx wy wz");
 
+  command = makeTwist("base");
+  command.values[4] = -2e6;
+  EXPECT_EQ(admit(gate, command),
+            "wy in a cartesian_velocity command is -2e+06 rad/s, expected at most 1e+06 rad/s either way");
+
   EXPECT_EQ(gate.inForce(kNow), nullptr);
+}
+
+TEST(CommandGateTest, ARefusalHasTheUnitOfItsJointAndMode) {
+  CommandGate gate({{"rail", "elbow"}, "base", "tool", /*timeout=*/0.5, /*slides=*/{true, false}});
+  ArmCommand command = makeVelocity(1e7, 0.0);
+  const std::vector<std::pair<ControlMode, std::string>> units = {
+      {ControlMode::effort, "N"}, {ControlMode::velocity, "m/s"}, {ControlMode::position, "m"}};
+  for (const auto& [mode, unit] : units) {
+    command.mode = mode;
+    EXPECT_EQ(admit(gate, command), std::string("rail in ") + (mode == ControlMode::effort ? "an " : "a ") +
+                                        toString(mode) + " command is 1e+07 " + unit + ", expected at most 1e+06 " +
+                                        unit + " either way");
+  }
+  command = {};
+  command.mode = ControlMode::trajectory;
+  command.path = {{1.0, Eigen::Vector2d(0.1, 0.2), Eigen::Vector2d(0.0, 1e9), {}}};
+  EXPECT_EQ(admit(gate, command),
+            "elbow in the velocity at point 1 of a path is 1e+09 rad/s, expected at most 1e+06 rad/s either way");
+}
+
+TEST(CommandGateTest, APositionToGoToIsInForceUntilItIsReplacedUnlessItMovesItself) {
+  CommandGate gate = makeGate();
+  ArmCommand command = makeVelocity(0.1, 0.2);
+  command.mode = ControlMode::position;
+  admit(gate, command);
+  EXPECT_NE(gate.inForce(kNow + 3600 * kNanosecondsPerSecond), nullptr) << "the arm comes to rest there";
+  command.rates = Eigen::Vector2d::Zero();
+  admit(gate, command);
+  EXPECT_NE(gate.inForce(kNow + 3600 * kNanosecondsPerSecond), nullptr) << "no velocity is none";
+  command.rates = Eigen::Vector2d(0.0, 0.1);
+  admit(gate, command);
+  EXPECT_NE(gate.inForce(kNow + 500 * kMillisecond), nullptr);
+  EXPECT_EQ(gate.inForce(kNow + 501 * kMillisecond), nullptr) << "it would run away";
+  EXPECT_EQ(gate.whyNone(), "no command for 0.5 s");
 }
 
 TEST(CommandGateTest, ACommandForAnotherModeThanTheOneInForceIsRefused) {
@@ -207,7 +252,7 @@ TEST(ControlModeTest, NamesAndModesAreTheSameBothWays) {
   } catch (const ConfigurationError& error) {
     EXPECT_STREQ(error.what(),
                  "control mode \"speed\" is not one of this arm, expected one of effort, velocity, position, "
-                 "trajectory, cartesian_velocity.");
+                 "trajectory, cartesian_velocity, gravity_compensation, impedance.");
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "demo_logger/robot/robot_model.h"
 #include "demo_logger/simulation/bullet_arm.h"
+#include "demo_logger/simulation/simulated_arm.h"
 #include "demo_logger/trajectory/error.h"
 #include "test/robot/own_arms.h"
 
@@ -197,6 +198,28 @@ TEST(ContactTest, AnObstacleWithoutSizeIsRefused) {
   } catch (const ModelError& error) {
     EXPECT_STREQ(error.what(), "an obstacle has a size of 0 m, expected above 0");
   }
+}
+
+TEST(ContactTest, WhatIsTouchedAtTheStartIsSaidWithLinkAndDepth) {
+  RobotDescription slide = makeSlide(/*aside=*/false);
+  slide.joints[0].link = "ball";
+  SimulatedArmConfiguration configuration;
+  configuration.surroundings = makeFloor(slide);
+  configuration.surroundings.floor = -0.09;  // the ball has a radius of 0.1 m
+  CollisionShape box;
+  box.size = {0.1, 0.1, 0.1};
+  box.pose.translation() = Eigen::Vector3d(0.0, 0.0, 0.5);
+  configuration.surroundings.obstacles = {box};
+  const std::string rest = ", which pushes it out; move that, or let the arm start elsewhere (initial_position).";
+  const auto overlaps = [&] { return SimulatedArm(slide, configuration).overlaps(); };
+  EXPECT_EQ(overlaps(), (std::vector<std::string>{"ball is 10.0 mm inside the floor" + rest}));
+  configuration.surroundings.floor = -0.1;
+  EXPECT_EQ(overlaps(), (std::vector<std::string>{"ball touches the floor" + rest}));
+  configuration.surroundings.floor = -0.101;
+  EXPECT_EQ(overlaps(), std::vector<std::string>{}) << "1 mm above the floor";
+  box.pose.translation() = Eigen::Vector3d(0.0, 0.0, 0.12);
+  configuration.surroundings.obstacles.push_back(box);
+  EXPECT_EQ(overlaps(), (std::vector<std::string>{"ball is 30.0 mm inside obstacles[1]" + rest}));
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ struct Contact {
   Eigen::Vector3d normal;  // out of the obstacle
   double distance = 0.0;   // [m]; below 0: they overlap
   double force = 0.0;      // [N] along the normal, in the last step
+  int obstacle = -1;       // which of the obstacles; -1: the floor
 };
 
 enum class Integrator {
@@ -83,6 +84,9 @@ class BulletArm {
   const Eigen::VectorXd& linkTorque() const;
   /// In the last step().
   const std::vector<Contact>& contacts() const;
+
+  /// What the links touch or overlap where they are now, the deepest contact of each link and obstacle.
+  std::vector<Contact> overlaps() const;
 
   /// Jᵀ W [N m or N] at the present state.
   Eigen::VectorXd externalTorque(const std::vector<LinkWrench>& wrenches) const;

@@ -15,15 +15,17 @@ class Snapshot;
 
 /// Lets a sound command in and keeps it in force until it is replaced or too old. It is too old when either its age
 /// since receipt or its age by stamp, corrected by the offset of its publisher's clock, exceeds the timeout: the first
-/// guards against a publisher that died, the second against one whose messages are stuck on the way. A path is in force
-/// until it is replaced: it has a duration of its own.
+/// guards against a publisher that died, the second against one whose messages are stuck on the way. What bounds itself
+/// is in force until it is replaced: a path, which has a duration of its own, and a position to go to, where the arm
+/// comes to rest. A position that moves by itself does not.
 class CommandGate {
  public:
   struct Configuration {
     std::vector<std::string> joints;
     std::string base;
     std::string tip;
-    double timeout = 0.5;  // [s]
+    double timeout = 0.5;      // [s]
+    std::vector<bool> slides;  // joints whose units are those of lengths; empty: none
   };
 
   explicit CommandGate(Configuration configuration);
@@ -37,6 +39,8 @@ class CommandGate {
   /// The command in force, values in the arm's joint order; null if there is none, and then whyNone() says why.
   const ArmCommand* inForce(Nanoseconds now);
   const std::string& whyNone() const { return why_none_; }
+  /// Whether the command in force is for another mode.
+  bool holdsAnother(ControlMode mode) const { return command_ && command_->mode != mode; }
   /// When the command in force came in.
   Nanoseconds receipt() const { return receipt_; }
 
@@ -53,10 +57,12 @@ class CommandGate {
 
  private:
   std::string checkValues(const ArmCommand& command, ArmCommand& sorted) const;
+  struct Units;
   std::string checkTwist(const ArmCommand& command) const;
   std::string checkNames(const std::vector<std::string>& names, std::vector<Eigen::Index>& order) const;
   std::string checkSize(const std::string& what, const Eigen::VectorXd& values, std::size_t names) const;
-  std::string sort(const std::string& what, const std::vector<Eigen::Index>& order, Eigen::VectorXd& values) const;
+  std::string sort(const std::string& what, const Units& units, const std::vector<Eigen::Index>& order,
+                   Eigen::VectorXd& values) const;
   std::string checkStamp(const ArmCommand& command, Nanoseconds now);
   static std::string checkStart(const ArmCommand& command, Nanoseconds now);
 

@@ -78,11 +78,14 @@ class SimulatedArm {
   const RobotDescription& description() const { return description_; }
   const ArmController& controller() const { return controller_; }
   const std::vector<Contact>& contacts() const { return body_.contacts(); }
+  /// What the arm touches or overlaps where it is now, a sentence each.
+  std::vector<std::string> overlaps() const;
   std::uint64_t refused() const { return controller_.refusedCommands() + refused_; }
   /// When the next tick is due, one period after the last; 0 before the first.
   Nanoseconds nextTick() const { return next_tick_; }
 
  private:
+  static constexpr std::size_t kMostWrenches = 32;  // at once
   struct TimedWrench {
     LinkWrench wrench;
     Nanoseconds until = 0;
@@ -90,7 +93,8 @@ class SimulatedArm {
   };
   void exchange(Snapshot& snapshot);
   void exchangeLoad(Snapshot& snapshot);
-  static void exchangeWrench(Snapshot& snapshot, TimedWrench& timed);
+  void restoreBody(const ArmState& state, const Eigen::VectorXd& link_torque);
+  void exchangeWrench(Snapshot& snapshot, TimedWrench& timed);
 
   RobotDescription description_;
   SimulatedArmConfiguration configuration_;
