@@ -14,6 +14,9 @@ void SimulatedArmNode::startDiagnostics(ros::NodeHandle& node) {
   diagnostics_.setHardwareID("simulated " + parameters_.robot.name);
   diagnostics_.add("control loop", this, &SimulatedArmNode::diagnoseLoop);
   diagnostics_.add("commands", this, &SimulatedArmNode::diagnoseCommands);
+  if (!parameters_.arm.surroundings.empty()) {
+    diagnostics_.add("surroundings", [this](diagnostic_updater::DiagnosticStatusWrapper& s) { diagnoseStart(s); });
+  }
   diagnostics_timer_ = node.createWallTimer(ros::WallDuration(kDiagnosticsPeriod),
                                             [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
 }
@@ -62,10 +65,24 @@ void SimulatedArmNode::diagnoseLoop(diagnostic_updater::DiagnosticStatusWrapper&
   last_report_ = report_;
 }
 
+void SimulatedArmNode::diagnoseStart(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  using Status = diagnostic_msgs::DiagnosticStatus;
+  if (overlaps_.empty()) {
+    status.summary(Status::OK, "the arm started clear of floor and obstacles");
+  } else {
+    status.summary(Status::WARN, "at the start " + overlaps_.front());
+  }
+  for (const std::string& overlap : overlaps_) status.add("at the start", overlap);
+}
+
 void SimulatedArmNode::diagnoseCommands(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using Status = diagnostic_msgs::DiagnosticStatus;
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (report_.clock_mismatches.empty()) {
+  if (report_.refused != refused_told_) {
+    status.summary(Status::WARN, std::to_string(report_.refused - refused_told_) +
+                                     " refused lately, the last: " + report_.last_refusal);
+    refused_told_ = report_.refused;
+  } else if (report_.clock_mismatches.empty()) {
     status.summary(Status::OK, report_.reason.empty() ? "as asked" : report_.reason);
   } else {
     status.summary(Status::WARN, report_.clock_mismatches.front());

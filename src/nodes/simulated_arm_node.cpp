@@ -54,6 +54,8 @@ SimulatedArmNode::SimulatedArmNode(ros::NodeHandle node, ros::NodeHandle private
   for (const AttachedLink& link : parameters_.links) links_[link.name] = link;
   if (parameters_.load) arm_.setLoad(parameters_.load);
   restoreState(std::nullopt);
+  overlaps_ = arm_.overlaps();
+  for (const std::string& overlap : overlaps_) ROS_WARN_STREAM("At the start " << overlap);
   truth_message_.name = parameters_.robot.jointNames();
   joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", kQueue);
   applied_command_ = node.advertise<AppliedCommand>("applied_command", kQueue);
@@ -194,7 +196,11 @@ void SimulatedArmNode::tick(TickClock& clock) {
     if (!why.empty()) arm_.refuse(sent.source, why);
   }
   const ArmTick tick = arm_.tick(clock.stamp(), inbox.commands);
-  if (arm_.refused() != refused) ROS_WARN_STREAM_THROTTLE(kRefusalLogPeriod, tick.applied.reason);
+  if (arm_.refused() != refused) {
+    ROS_WARN_STREAM_THROTTLE(kRefusalLogPeriod, tick.applied.reason);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    report_.last_refusal = tick.applied.reason;
+  }
   publish(tick);
   clock.advance(steadyNow(), rosNow());
   report(clock, tick, inbox.dropped);

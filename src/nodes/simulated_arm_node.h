@@ -75,6 +75,7 @@ class SimulatedArmNode {
     std::string mode;
     Eigen::VectorXd q;
     std::string reason;
+    std::string last_refusal;
     std::vector<std::string> clock_mismatches;
     JointStateFaults::Counters faults;
   };
@@ -104,10 +105,12 @@ class SimulatedArmNode {
   void report(TickClock& clock, const ArmTick& tick, std::uint64_t dropped);
   void startDiagnostics(ros::NodeHandle& node);
   void diagnoseLoop(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnoseStart(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void diagnoseCommands(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   SimulatedArmParameters parameters_;
   SimulatedArm arm_;
+  std::vector<std::string> overlaps_;  // with floor and obstacles at the start, a sentence each
   JointStateFaults faults_;
   std::map<std::string, AttachedLink> links_;  // by name
   ros::Publisher joint_states_;
@@ -129,7 +132,8 @@ class SimulatedArmNode {
   std::string state_;
   std::condition_variable state_saved_;
   LoopReport report_;
-  LoopReport last_report_;  // of the diagnostics before
+  LoopReport last_report_;          // of the diagnostics before
+  std::uint64_t refused_told_ = 0;  // by the diagnostics before
 };
 
 }  // namespace demo_logger

@@ -154,7 +154,7 @@ TEST_F(SimulatedArmServicesTest, AHandPushesThroughHumanWrenchUntilItsMessagesEn
 TEST_F(SimulatedArmServicesTest, NotANumberIsRefusedAndTheArmStays) {
   ros::Publisher publisher = advertise<geometry_msgs::TwistStamped>("teleop_cmd");
   EXPECT_TRUE(send(publisher, makeStamped(std::numeric_limits<double>::quiet_NaN()), [](const AppliedCommand& tick) {
-    return tick.reason.find(refusal("component 1 of the command is not a number")) != std::string::npos &&
+    return tick.reason.find(refusal("vy in a cartesian_velocity command is nan m/s")) != std::string::npos &&
            tick.command == std::vector<double>(6, 0.0);
   })) << applied.last().reason;
 }
@@ -187,11 +187,40 @@ TEST_F(SimulatedArmServicesTest, TenThousandCommandsASecondCostNoTickAndAreCount
     ASSERT_EQ(ticks[i].mode, "cartesian_velocity");
   }
   EXPECT_GT(said, 100U);
-  EXPECT_TRUE(diagnostics.waitUntil([](const diagnostic_msgs::DiagnosticArray& array) {
+  const auto levelOfCommands = [](const diagnostic_msgs::DiagnosticArray& array, std::string& summary) {
     for (const auto& status : array.status) {
       for (const auto& value : status.values) {
-        if (value.key == "refused" && std::atol(value.value.c_str()) >= 1000) return true;
+        if (value.key != "refused" || std::atol(value.value.c_str()) < 1000) continue;
+        summary = status.message;
+        return static_cast<int>(status.level);
       }
+    }
+    return -1;
+  };
+  EXPECT_TRUE(diagnostics.waitUntil([&](const diagnostic_msgs::DiagnosticArray& array) {
+    std::string summary;
+    return levelOfCommands(array, summary) == diagnostic_msgs::DiagnosticStatus::WARN &&
+           summary.find(" refused lately, the last: ") != std::string::npos &&
+           summary.find(refusal("a command for mode velocity came while mode cartesian_velocity is in force")) !=
+               std::string::npos;
+  }));
+  EXPECT_TRUE(diagnostics.waitUntil([&](const diagnostic_msgs::DiagnosticArray& array) {
+    std::string summary;
+    return levelOfCommands(array, summary) == diagnostic_msgs::DiagnosticStatus::OK;
+  })) << "once the refusals are over";
+}
+
+TEST_F(SimulatedArmServicesTest, AnotherUrdfNeedsNoOtherArgumentAndItsFloorIsNoticed) {
+  Listener<sensor_msgs::JointState> others(ros::NodeHandle("other"), "joint_states");
+  EXPECT_TRUE(others.waitUntil([](const sensor_msgs::JointState& state) {
+    return state.name == std::vector<std::string>{"joint_1", "joint_2"};
+  }));
+  Listener<diagnostic_msgs::DiagnosticArray> diagnostics(node, "/diagnostics");
+  EXPECT_TRUE(diagnostics.waitUntil([](const diagnostic_msgs::DiagnosticArray& array) {
+    for (const auto& status : array.status) {
+      if (status.name != "other/simulated_arm: surroundings" && status.name != "simulated_arm: surroundings") continue;
+      return status.level == diagnostic_msgs::DiagnosticStatus::WARN &&
+             status.message.find(" mm inside the floor, which pushes it out; ") != std::string::npos;
     }
     return false;
   }));

@@ -17,7 +17,7 @@
 
 namespace demo_logger {
 
-inline const std::vector<double> kInitialPosition{0.0, 0.3, 0.0, 1.4, 0.0, 1.44, 0.0};  // config/simulated_arm.yaml
+inline const std::vector<double> kInitialPosition{0.0, 0.3, 0.0, 1.4, 0.0, 1.44, 0.0};  // config/demo_arm.yaml
 
 /// How the arm refuses what this test sends.
 inline std::string refusal(const std::string& why) { return "refused from " + ros::this_node::getName() + ": " + why; }
