@@ -17,6 +17,17 @@ std::vector<Eigen::Index> ageOfEachColumn(const Demonstration& demonstration) {
   return age;
 }
 
+/// The first row with a value that could be there: an observer has to settle.
+std::size_t firstRow(const Demonstration& demonstration, std::size_t column) {
+  if (demonstration.columns[column].name.rfind("tau_h_", 0) != 0) return 0;
+  std::size_t row = 0;
+  const auto isMissing = [&](std::size_t at) {
+    return std::isnan(demonstration.values(static_cast<Eigen::Index>(at), static_cast<Eigen::Index>(column)));
+  };
+  while (row < demonstration.time.size() && isMissing(row)) ++row;
+  return row < demonstration.time.size() ? row : 0;
+}
+
 }  // namespace
 
 void checkMissingValues(const Demonstration& demonstration, const CheckLimits& limits, Findings& findings) {
@@ -27,7 +38,7 @@ void checkMissingValues(const Demonstration& demonstration, const CheckLimits& l
     std::size_t expected = 0;
     std::size_t missing = 0;
     double first = 0.0;
-    for (std::size_t row = 0; row < demonstration.time.size(); ++row) {
+    for (std::size_t row = firstRow(demonstration, i); row < demonstration.time.size(); ++row) {
       const auto index = static_cast<Eigen::Index>(row);
       if (age[i] >= 0 && std::isnan(demonstration.values(index, age[i]))) {
         continue;

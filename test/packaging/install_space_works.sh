@@ -32,6 +32,7 @@ rosrun demo_logger demo_tool --help >/dev/null
 programs() { (cd "$1/lib/demo_logger" && printf '%s\n' *_node demo_tool | sort); }
 expect "$(programs "$installed")" "$(programs "$devel")" "what is installed in lib/demo_logger"
 rosrun demo_logger draw_demonstration.py --help >/dev/null
+rosrun demo_logger draw_human_torque.py --help >/dev/null
 
 port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("localhost", 0)); print(s.getsockname()[1])')
 export ROS_MASTER_URI=http://localhost:$port

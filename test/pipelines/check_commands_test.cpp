@@ -43,6 +43,13 @@ TEST(CheckCommandsTest, ARecordingWithoutAnyCommandIsAnError) {
   EXPECT_TRUE(result.summary.ages.empty());
 }
 
+TEST(CheckCommandsTest, AHandThatGuidesTheArmNeedsNoCommand) {
+  Demonstration demonstration = makeSineDemonstration();
+  removeCommands(demonstration, 500);
+  demonstration.metadata.channel = "kinesthetic";
+  EXPECT_TRUE(check(demonstration).findings.empty());
+}
+
 TEST(CheckCommandsTest, OldCommandsAreToldWithTheirShareAndTheOldest) {
   Demonstration demonstration = makeSineDemonstration();
   for (Eigen::Index row = 100; row < 200; ++row) {

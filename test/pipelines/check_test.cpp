@@ -121,6 +121,17 @@ TEST(CheckTest, MissingValuesOfAStateAreAnErrorAboveOnePercent) {
             "lost, came too late, or carried NaN.");
 }
 
+TEST(CheckTest, AnObserverMaySettleButNotStartAnewUnnoticed) {
+  Demonstration demonstration = makeSineDemonstration();
+  demonstration.columns.push_back({"tau_h_elbow", "N m", Role::auxiliary, Interpolation::linear, "observer"});
+  demonstration.values.conservativeResize(Eigen::NoChange, demonstration.values.cols() + 1);
+  demonstration.values.rightCols<1>().setConstant(0.5);
+  demonstration.values.rightCols<1>().head(10).setConstant(kMissing);
+  EXPECT_TRUE(check(demonstration).findings.empty());
+  demonstration.values.rightCols<1>().segment(300, 10).setConstant(kMissing);
+  EXPECT_EQ(onlyFinding(check(demonstration)).sentence.rfind("column tau_h_elbow is missing in 10 rows", 0), 0U);
+}
+
 TEST(CheckTest, ColumnsWithoutAnyValueAreToldTogether) {
   Demonstration demonstration = makeSineDemonstration();
   demonstration.values.middleCols(2, 2).setConstant(kMissing);

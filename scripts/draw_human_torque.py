@@ -1,0 +1,104 @@
+#!/usr/bin/python3
+"""Draws the torque of the hand that guided an arm, joint by joint: as recovered, and beside it, where they are known,
+the truth (columns truth_<joint>, of a simulated arm) and what an observer said as it happened."""
+
+import argparse
+import os
+import sys
+
+from draw_demonstration import TEXT, Demonstration, np, plt, style
+
+TRUE = "#b9b9b9"
+RECOVERED = "#c8371b"
+LIVE = "#1f6fb2"
+EDGE = 0.25  # [s] at either end, where a smoother knows one side only
+
+
+def error_in_percent(found, truth, time, peak):
+    inside = (time > time[0] + EDGE) & (time < time[-1] - EDGE) & np.isfinite(found) & np.isfinite(truth)
+    return 100.0 * np.sqrt(np.mean((found[inside] - truth[inside]) ** 2)) / peak if inside.any() else np.nan
+
+
+def draw_joint(axes, joint, taught, live):
+    style(axes)
+    time = taught.time
+    found = taught.values["tau_h_" + joint]
+    truth = taught.values.get("truth_" + joint)
+    if truth is not None:
+        axes.plot(time, truth, color=TRUE, linewidth=4.5, label="true")
+    if live is not None and "tau_h_" + joint in live.values:
+        axes.plot(live.time, live.values["tau_h_" + joint], color=LIVE, linewidth=1.2, label="as it happened")
+    deviation = taught.values.get("tau_h_std_" + joint)
+    if deviation is not None:
+        axes.fill_between(time, found - 2 * deviation, found + 2 * deviation, color=RECOVERED, alpha=0.2, linewidth=0,
+                          label="± 2 standard deviations")
+    axes.plot(time, found, color=RECOVERED, linewidth=0.9, label="recovered")
+    title = joint
+    if truth is not None:
+        peak = np.nanmax(np.abs(truth))
+        title += f"   off by {error_in_percent(found, truth, time, peak):.2g} % of its peak" if peak > 0.0 else ""
+    axes.set_title(title, fontsize=9, color=TEXT, loc="left")
+    axes.set_ylabel(f"[{taught.units.get('tau_h_' + joint) or 'N m'}]", fontsize=8, color=TEXT)
+
+
+def explain(axes, taught, live, joints, handles):
+    axes.axis("off")
+    axes.legend(*handles, loc="upper left", frameon=False, fontsize=9)
+    truths = [taught.values.get("truth_" + joint) for joint in joints]
+    if any(truth is None for truth in truths):
+        return
+    peak = max(np.nanmax(np.abs(truth)) for truth in truths)
+    if not peak > 0.0:
+        return
+
+    def overall(source):
+        errors = [error_in_percent(source.values["tau_h_" + joint], truth, taught.time, peak)
+                  for joint, truth in zip(joints, truths)]
+        return np.sqrt(np.mean(np.square(errors)))
+
+    text = f"all joints, root mean square, of the peak of {peak:.3g} N m:\n   recovered {overall(taught):.2g} %"
+    if live is not None and len(live.time) == len(taught.time):
+        text += f"\n   as it happened {overall(live):.2g} %, late by the observer's delay"
+    axes.text(0.02, 0.3, text, transform=axes.transAxes, fontsize=9, color=TEXT, va="top", linespacing=1.5)
+
+
+def draw(taught, live, output):
+    joints = [name[len("tau_h_"):] for name in taught.joints("tau_h_") if not name.startswith("tau_h_std_")]
+    if not joints:
+        raise ValueError("no column tau_h_<joint> to draw; `demo_tool torque` adds them")
+    rows = len(joints) // 2 + 1
+    figure, grid = plt.subplots(rows, 2, figsize=(11.0, 0.7 + 1.75 * rows), sharex=True, layout="constrained")
+    panels = grid.T.flatten()
+    for axes, joint in zip(panels, joints):
+        draw_joint(axes, joint, taught, live)
+    for axes in panels[len(joints):]:
+        axes.axis("off")
+    explain(panels[len(joints)], taught, live, joints, panels[0].get_legend_handles_labels())
+    panels[min(rows, len(joints)) - 1].set_xlabel("time [s]", fontsize=9, color=TEXT)
+    panels[len(joints) - 1].tick_params(labelbottom=True)  # the lowest of the second column
+    panels[0].set_xlim(taught.time[0], taught.time[-1])
+    figure.suptitle(f"Torque of the hand   ({taught.title()})", fontsize=11, color=TEXT)
+    figure.savefig(output, dpi=100, facecolor="white")
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="example: rosrun demo_logger draw_human_torque.py taught.csv --live demos/demo_000001.csv -o torque.png")
+    parser.add_argument("csv", help="a demonstration with columns tau_h_<joint>, as `demo_tool torque` writes it")
+    parser.add_argument("--live", help="the recording it was made of, whose tau_h_<joint> are those of the observer")
+    parser.add_argument("-o", "--output", help="PNG, SVG or PDF; default: beside the CSV, .png")
+    arguments = parser.parse_args()
+    try:
+        output = arguments.output or os.path.splitext(arguments.csv)[0] + ".png"
+        live = Demonstration(arguments.live) if arguments.live else None
+        draw(Demonstration(arguments.csv), live, output)
+    except (OSError, ValueError) as error:
+        print(f"draw_human_torque.py: {error}", file=sys.stderr)
+        return 2
+    print(output)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
