@@ -53,7 +53,7 @@ ImpedanceGains SimulatedArmNode::requestedGains(ControlMode mode, const SetContr
   if (asked && mode != ControlMode::impedance) {
     throw ConfigurationError("mode " + request.mode + " takes neither stiffness nor damping, expected both empty.");
   }
-  const ImpedanceGains defaults = arm_.controller().impedanceGains();  // never changes
+  ImpedanceGains defaults = arm_.controller().impedanceGains();  // never changes
   if (!asked) return defaults;
   Eigen::VectorXd q;
   {

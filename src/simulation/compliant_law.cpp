@@ -19,16 +19,16 @@ Eigen::VectorXd CompliantLaw::torque(const RobotModel& model, const ArmState& st
   if (q_ref_.size() == 0) q_ref_ = state.q;
   // What the motors cannot give is cut off by the controller, which says so.
   const Eigen::VectorXd no_limit = Eigen::VectorXd::Constant(model.size(), std::numeric_limits<double>::infinity());
-  const Eigen::VectorXd own = impedanceTorque(gains_, model.gravity(state.q), state.q, state.dq, q_ref_, no_limit);
+  Eigen::VectorXd own = impedanceTorque(gains_, model.gravity(state.q), state.q, state.dq, q_ref_, no_limit);
   if (before_.size() > 0) {
     excess_ = before_ - own;
     before_.resize(0);
   }
   if (excess_.size() == 0) return own;
   const double share = 1.0 - static_cast<double>(faded_ticks_) / static_cast<double>(fading_ticks_);
-  const Eigen::VectorXd torque = own + share * excess_;
+  own += share * excess_;
   if (++faded_ticks_ >= fading_ticks_) excess_.resize(0);
-  return torque;
+  return own;
 }
 
 void CompliantLaw::exchange(Snapshot& snapshot) {

@@ -226,7 +226,7 @@ TEST_F(SimulatedArmNodeTest, AnUnknownModeIsRefusedWithTheOnesThereAre) {
   EXPECT_FALSE(response.success);
   EXPECT_EQ(response.message,
             "control mode \"telepathy\" is not one of this arm, expected one of effort, velocity, position, "
-            "trajectory, cartesian_velocity.");
+            "trajectory, cartesian_velocity, gravity_compensation, impedance.");
 }
 
 TEST_F(SimulatedArmNodeTest, APauseStopsTimeForTheArm) {

@@ -353,7 +353,7 @@ TEST(CompliantArmTest, UnstableGainsOfTheConfigurationStopTheArm) {
   SimulatedArmConfiguration configuration = makeArmConfiguration(ControlMode::impedance);
   configuration.controller.impedance = {seven(100.0), seven(100.0)};
   try {
-    SimulatedArm(describeDemoArm(), configuration);
+    const SimulatedArm arm(describeDemoArm(), configuration);
     FAIL() << "taken";
   } catch (const ConfigurationError& error) {
     EXPECT_EQ(std::string(error.what()).rfind("impedance: damping of joint_7 is 100 N m s/rad, expected at most ", 0),

@@ -148,7 +148,8 @@ TEST(SimulatedHandTest, TremblesBetweenSevenAndElevenHertz) {
   EXPECT_GT(largest, 0.1);
   double inside = 0.0;
   double outside = 0.0;
-  for (double frequency = 0.5; frequency < 30.0; frequency += 0.5) {
+  for (int half = 1; half < 60; ++half) {
+    const double frequency = 0.5 * half;
     (frequency > 6.0 && frequency < 12.0 ? inside : outside) += power(difference, frequency);
   }
   EXPECT_LT(outside, 0.02 * inside);
