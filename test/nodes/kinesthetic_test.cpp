@@ -88,7 +88,7 @@ class KinestheticTest : public testing::Test {
                       "--force", "--urdf", (folder / "arm.urdf").string(), "--base", "base_link", "--tip", "tool_tip"},
                      (folder / "log").string());
     EXPECT_EQ(tool.wait(), 0) << tool.output();
-    const Demonstration result = readDemonstration(output).demonstration;
+    Demonstration result = readDemonstration(output).demonstration;
     std::filesystem::remove_all(folder);
     return result;
   }

@@ -50,7 +50,7 @@ TEST(SimulatedHandNodeTest, AnswersEachJointStateGuidesTheArmPressesItsButtonsAn
     truth.publish(state);
     ASSERT_TRUE(waitFor([&] { return wrench.messages().size() > answered || wrench.publishers() == 0; }));
     if (wrench.messages().size() > answered) {
-      const geometry_msgs::WrenchStamped answer = wrench.last();
+      const geometry_msgs::WrenchStamped& answer = wrench.last();
       ASSERT_EQ(answer.header.stamp, state.header.stamp);
       ASSERT_EQ(answer.header.frame_id, "tool_tip");
       arm.applyWrench(toLinkWrench(arm.description(), answer.wrench), tick.stamp + 200 * kMillisecond, "/hand");
