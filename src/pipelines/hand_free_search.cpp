@@ -16,7 +16,8 @@ constexpr std::size_t kMostSeeds = 60;   // spread over the recordings
 constexpr std::size_t kShortestRun = 3;  // windows; a hand that passes through its own mean is not away
 constexpr int kMostRounds = 15;
 constexpr int kTightenings = 3;
-constexpr double kUsual = 3.0;  // times the usual residual still counts as usual
+constexpr double kUsual = 3.0;     // times the usual residual still counts as usual
+constexpr double kTightest = 0.2;  // of the tolerance; no model is so good that a hand's touch could be less
 
 struct Window {
   Index first;
@@ -48,7 +49,11 @@ class Search {
  public:
   Search(const TorqueRegression& regression, std::vector<Window> windows, HandFreeTolerance tolerance,
          const Prior& prior)
-      : regression_(regression), windows_(std::move(windows)), tolerance_(std::move(tolerance)), prior_(prior) {}
+      : regression_(regression),
+        windows_(std::move(windows)),
+        tolerance_(std::move(tolerance)),
+        least_(kTightest * tolerance_.largest),
+        prior_(prior) {}
 
   std::vector<bool> run() {
     std::vector<bool> best(windows_.size(), false);
@@ -151,7 +156,8 @@ class Search {
       if (residuals.empty()) continue;
       const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
       std::nth_element(residuals.begin(), middle, residuals.end());
-      tolerance_.largest[i] = std::min(tolerance_.largest[i], kUsual * std::max(*middle, tolerance_.noise[i]));
+      const double usual = kUsual * std::max(*middle, tolerance_.noise[i]);
+      tolerance_.largest[i] = std::min(tolerance_.largest[i], std::max(usual, least_[i]));
     }
     return explained(theta);
   }
@@ -168,6 +174,7 @@ class Search {
   const TorqueRegression& regression_;
   const std::vector<Window> windows_;
   HandFreeTolerance tolerance_;
+  const Eigen::VectorXd least_;
   const Prior& prior_;
 };
 

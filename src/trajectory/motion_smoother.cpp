@@ -18,7 +18,15 @@ constexpr std::size_t kBlocks = 8;           // of a long record, spread over it
 constexpr std::size_t kCoarseBlocks = 4;     // about where
 constexpr std::size_t kBlockSamples = 2048;  // each
 constexpr double kCoarseStep = 1.6;          // between the T looked at first
-constexpr double kFineStep = 1.02;           // to which T is then determined
+constexpr double kFineStep = 1.1;            // to which T is then determined
+
+// How calm the motion is, piece by piece. The T of the whole is that of its lively parts; a shorter one is not looked
+// for, as the steps of an encoder in a slow part would be taken for life.
+constexpr double kLivelyStep = 1.5;        // between the T looked at
+constexpr int kCalmest = 6;                // the last of them, relative to T
+constexpr double kPieceTimes = 40.0;       // T, at least, that a piece lasts
+constexpr std::size_t kPieceSamples = 64;  // ditto
+constexpr double kChange = 1.0;            // of ln T from piece to piece: a usual one
 
 void require(const std::vector<double>& time, const Eigen::VectorXd& position) {
   if (position.size() != static_cast<Index>(time.size())) {
@@ -126,13 +134,100 @@ class TimeConstantSearch {
   const double interval_;
 };
 
+/// Finds how T changes along a record: by the likelihood of each piece for some T, and by changes from piece to piece
+/// not being large.
+class LivelinessSearch {
+ public:
+  /// `r`: variance of the measurements.
+  LivelinessSearch(const std::vector<double>& time, const Eigen::VectorXd& position, double interval, double T,
+                   double r)
+      : time_(time), position_(position), interval_(interval), T_(T), r_(r) {}
+
+  /// The factor on the snap density before each sample; empty: the record is too short, or free of noise.
+  std::vector<double> search() const {
+    const auto lasting = static_cast<std::size_t>(kPieceTimes * T_ / interval_);
+    const std::size_t samples = std::max(kPieceSamples, lasting);
+    const std::size_t count = (time_.size() + samples - 1) / samples;
+    if (count < 3 || !(r_ > 0.0)) return {};
+    Eigen::MatrixXd likelihood(kSteps, count);
+    for (int step = 0; step < kSteps; ++step) {
+      RandomSnapFilter filter(time_, position_, interval_, T_ * std::pow(kLivelyStep, step));
+      const std::vector<double> pieces = filter.pieceLogLikelihoods(samples, r_);
+      likelihood.row(step) = Eigen::Map<const Eigen::RowVectorXd>(pieces.data(), static_cast<Index>(count));
+    }
+    return interpolated(mostLikely(likelihood), samples);
+  }
+
+ private:
+  static constexpr int kSteps = kCalmest + 1;
+
+  /// Of ln(T / T_) in each piece: Viterbi's path over the steps, then the vertex of the parabola around it.
+  static std::vector<double> mostLikely(const Eigen::MatrixXd& likelihood) {
+    const double change = std::log(kLivelyStep) / kChange;
+    Eigen::MatrixXd best = likelihood;  // log-probability of the best path that ends there
+    Eigen::MatrixXi from = Eigen::MatrixXi::Zero(likelihood.rows(), likelihood.cols());
+    for (Index piece = 1; piece < likelihood.cols(); ++piece) {
+      for (Index step = 0; step < kSteps; ++step) {
+        double most = -std::numeric_limits<double>::infinity();
+        for (Index last = 0; last < kSteps; ++last) {
+          const double jump = change * static_cast<double>(step - last);
+          const double probability = best(last, piece - 1) - 0.5 * jump * jump;
+          if (probability <= most) continue;
+          most = probability;
+          from(step, piece) = static_cast<int>(last);
+        }
+        best(step, piece) += most;
+      }
+    }
+    std::vector<double> path(static_cast<std::size_t>(likelihood.cols()));
+    Index step = 0;
+    best.rightCols<1>().maxCoeff(&step);
+    for (Index piece = likelihood.cols() - 1; piece >= 0; --piece) {
+      const double there = static_cast<double>(step) + vertex(likelihood.col(piece), step);
+      path[static_cast<std::size_t>(piece)] = std::log(kLivelyStep) * there;
+      step = from(step, piece);
+    }
+    return path;
+  }
+
+  /// Of the parabola through a value and its neighbours, in steps from it.
+  static double vertex(const Eigen::VectorXd& values, Index at) {
+    if (at == 0 || at + 1 == values.size()) return 0.0;
+    const double curvature = values[at - 1] - 2.0 * values[at] + values[at + 1];
+    return curvature < 0.0 ? std::clamp(0.5 * (values[at - 1] - values[at + 1]) / curvature, -0.5, 0.5) : 0.0;
+  }
+
+  /// From the middle of a piece to that of the next in a straight line of ln T; S goes with T⁻⁸.
+  std::vector<double> interpolated(const std::vector<double>& path, std::size_t samples) const {
+    std::vector<double> factors(time_.size());
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      const double there = std::max(0.0, (static_cast<double>(k) + 0.5) / static_cast<double>(samples) - 0.5);
+      const auto piece = std::min(static_cast<std::size_t>(there), path.size() - 2);
+      const double share = std::min(1.0, there - static_cast<double>(piece));
+      factors[k] = std::exp(-8.0 * ((1.0 - share) * path[piece] + share * path[piece + 1]));
+    }
+    return factors;
+  }
+
+  const std::vector<double>& time_;
+  const Eigen::VectorXd& position_;
+  const double interval_;
+  const double T_;
+  const double r_;
+};
+
 }  // namespace
 
 SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position) {
   require(time, position);
   const double interval = usualInterval(time);
   const double T = TimeConstantSearch(time, position, interval).search();
-  return RandomSnapFilter(time, position, interval, T).smooth();
+  RandomSnapFilter uniform(time, position, interval, T);
+  uniform.run(0, time.size());
+  const double r = uniform.variance();
+  RandomSnapFilter filter(time, position, interval, T);
+  filter.setLiveliness(LivelinessSearch(time, position, interval, T, r).search());
+  return filter.smooth(r);
 }
 
 SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position, double time_constant) {

@@ -21,6 +21,24 @@ Eigen::Matrix4d inverseOf(const Eigen::Matrix4d& matrix) {
 
 Eigen::Matrix4d symmetric(const Eigen::Matrix4d& matrix) { return 0.5 * (matrix + matrix.transpose()); }
 
+/// P = F P Fᵀ + Q by what F has of ones and zeros, a third of the work: most of a search goes here.
+void addStep(const Eigen::Matrix4d& F, const Eigen::Matrix4d& Q, Eigen::Matrix4d& P) {
+  const double a = F(0, 1);
+  const double b = F(0, 2);
+  const double c = F(0, 3);
+  Eigen::Matrix4d M = P;  // P Fᵀ
+  M.col(0) += a * P.col(1) + b * P.col(2) + c * P.col(3);
+  M.col(1) += a * P.col(2) + b * P.col(3);
+  M.col(2) += a * P.col(3);
+  for (int j = 0; j < 4; ++j) {
+    P(0, j) = M(0, j) + a * M(1, j) + b * M(2, j) + c * M(3, j) + Q(0, j);
+    if (j >= 1) P(1, j) = P(j, 1) = M(1, j) + a * M(2, j) + b * M(3, j) + Q(1, j);
+    if (j >= 2) P(2, j) = P(j, 2) = M(2, j) + a * M(3, j) + Q(2, j);
+    P(j, 0) = P(0, j);
+  }
+  P(3, 3) = M(3, 3) + Q(3, 3);
+}
+
 }  // namespace
 
 RandomSnapFilter::RandomSnapFilter(const std::vector<double>& time, const Eigen::VectorXd& position, double interval,
@@ -51,27 +69,27 @@ RandomSnapFilter::Matrix RandomSnapFilter::processNoise(double duration) const {
   return interval_ / T_ * d * Q;
 }
 
-const RandomSnapFilter::Step& RandomSnapFilter::step(double duration) const {
+const RandomSnapFilter::Step& RandomSnapFilter::stepTo(std::size_t k) const {
   constexpr double kAlike = 1e-9;  // of a duration; what adding up doubles costs at most
-  if (std::abs(duration - step_.duration) > kAlike * duration) {
-    step_ = {duration, transition(duration), processNoise(duration)};
+  const double duration = time_[k] - time_[k - 1];
+  const double liveliness = liveliness_.empty() ? 1.0 : liveliness_[k];
+  if (std::abs(duration - step_.duration) > kAlike * duration || liveliness != step_.liveliness) {
+    step_ = {duration, liveliness, transition(duration), liveliness * processNoise(duration)};
   }
   return step_;
 }
 
-void RandomSnapFilter::predict(Knowledge& knowledge, double duration) const {
+void RandomSnapFilter::predict(Knowledge& knowledge, std::size_t k) const {
+  const Step& step = stepTo(k);
   if (!knowledge.is_information) {
-    const auto& [unused, F, Q] = step(duration);
-    const Matrix moved = F * knowledge.matrix;
-    knowledge.vector = F * knowledge.vector;
-    knowledge.matrix = Q;
-    knowledge.matrix.noalias() += moved * F.transpose();
+    knowledge.vector = step.F * knowledge.vector;
+    addStep(step.F, step.Q, knowledge.matrix);
     return;
   }
   // With A = F⁻ᵀ Y F⁻¹:  (A⁻¹ + Q)⁻¹ = (1 + A Q)⁻¹ A, which needs no inverse of Y.
-  const Matrix back = transition(-duration);
+  const Matrix back = transition(-step.duration);
   const Matrix A = back.transpose() * knowledge.matrix * back;
-  const Eigen::PartialPivLU<Matrix> blurred(Matrix::Identity() + A * processNoise(duration));
+  const Eigen::PartialPivLU<Matrix> blurred(Matrix::Identity() + A * step.Q);
   knowledge.matrix = symmetric(blurred.solve(A));
   knowledge.vector = blurred.solve(back.transpose() * knowledge.vector);
 }
@@ -111,7 +129,7 @@ void RandomSnapFilter::filter(std::size_t first, std::size_t last, const Visit& 
   Knowledge knowledge;
   std::size_t measured = 0;
   for (std::size_t k = first; k < last; ++k) {
-    if (k > first) predict(knowledge, time_[k] - time_[k - 1]);
+    if (k > first) predict(knowledge, k);
     const double position = position_[static_cast<Eigen::Index>(k)];
     if (!std::isnan(position)) measure(knowledge, position, measured++);
     if (knowledge.is_information && measured >= kKnownAfter && time_[k] - time_[first] > T_) {
@@ -127,20 +145,34 @@ void RandomSnapFilter::run(std::size_t first, std::size_t last) {
   filter(first, last, [](std::size_t, const Knowledge&) {});
 }
 
+std::vector<double> RandomSnapFilter::pieceLogLikelihoods(std::size_t samples, double r) {
+  std::vector<double> pieces;
+  double before = 0.0;
+  filter(0, time_.size(), [&](std::size_t k, const Knowledge&) {
+    if ((k + 1) % samples != 0 && k + 1 != time_.size()) return;
+    const double until = -0.5 * (squares_ / r + sumOfLogarithms());
+    pieces.push_back(until - before);
+    before = until;
+  });
+  return pieces;
+}
+
+double RandomSnapFilter::sumOfLogarithms() const { return logarithms_ + std::log(product_); }
+
 double RandomSnapFilter::variance() const { return squares_ / static_cast<double>(innovations_); }
 
 double RandomSnapFilter::logLikelihood() const {
   const auto n = static_cast<double>(innovations_);
-  return -0.5 * (n * std::log(2.0 * kPi * variance()) + n + logarithms_ + std::log(product_));
+  return -0.5 * (n * std::log(2.0 * kPi * variance()) + n + sumOfLogarithms());
 }
 
-SmoothedMotion RandomSnapFilter::smooth() {
+SmoothedMotion RandomSnapFilter::smooth(std::optional<double> known_r) {
   const std::size_t count = time_.size();
   std::vector<Knowledge> until(count);  // each sample, and with it
   filter(0, count, [&](std::size_t k, const Knowledge& knowledge) { until[k] = knowledge; });
 
   SmoothedMotion motion;
-  const double r = variance();
+  const double r = known_r.value_or(variance());
   motion.measurement_deviation = std::sqrt(r);
   motion.snap_density = r * interval_ / std::pow(T_, 8);
   motion.time_constant = T_;
@@ -177,11 +209,10 @@ SmoothedMotion RandomSnapFilter::smooth() {
       Y(0, 0) += 1.0;
       y[0] += position;
     }
-    const double duration = time_[k] - time_[k - 1];
-    const auto& [unused, F, Q] = step(duration);
-    const Eigen::PartialPivLU<Matrix> blurred(Matrix::Identity() + Y * Q);
-    y = F.transpose() * blurred.solve(y);
-    Y = symmetric(F.transpose() * blurred.solve(Y) * F);
+    const Step& step = stepTo(k);
+    const Eigen::PartialPivLU<Matrix> blurred(Matrix::Identity() + Y * step.Q);
+    y = step.F.transpose() * blurred.solve(y);
+    Y = symmetric(step.F.transpose() * blurred.solve(Y) * step.F);
   }
   return motion;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "demo_logger/trajectory/motion_smoother.h"
@@ -15,21 +17,30 @@ namespace demo_logger {
 /// which is cheaper, takes over when a time constant has been seen. What the later samples say about an instant is
 /// information too; together they give the smoothed motion (Fraser and Potter 1969), without any difference of large
 /// numbers.
+///
+/// A motion need not be as lively all the time: its snap density may be given a factor for each step.
 class RandomSnapFilter {
  public:
   /// References are kept. `interval` is the usual one Δt [s].
   RandomSnapFilter(const std::vector<double>& time, const Eigen::VectorXd& position, double interval,
                    double time_constant);
 
+  /// On the snap density before each sample, relative to that of T; of the first sample it does not matter.
+  void setLiveliness(std::vector<double> factors) { liveliness_ = std::move(factors); }
+
   /// Runs over samples [first, last) and adds up what the likelihood needs.
   void run(std::size_t first, std::size_t last);
+
+  /// Runs over everything. The log-likelihood of each piece of so many samples, the last one included if it is shorter,
+  /// given what came before it and the measurements' variance r; but for a term that all T have in common.
+  std::vector<double> pieceLogLikelihoods(std::size_t samples, double r);
 
   /// Both as the samples filtered so far say. `variance` is the most likely r for this T.
   double variance() const;
   double logLikelihood() const;
 
-  /// Runs over everything, then smooths.
-  SmoothedMotion smooth();
+  /// Runs over everything, then smooths. The measurements' variance r is `variance()` if none is given.
+  SmoothedMotion smooth(std::optional<double> r = std::nullopt);
 
  private:
   using Vector = Eigen::Vector4d;
@@ -45,26 +56,30 @@ class RandomSnapFilter {
   /// Calls visit(k, knowledge) after each sample k of [first, last).
   template <typename Visit>
   void filter(std::size_t first, std::size_t last, const Visit& visit);
-  void predict(Knowledge& knowledge, double duration) const;
+  /// To sample k from the one before.
+  void predict(Knowledge& knowledge, std::size_t k) const;
   /// `count`: how many samples were measured before.
   void measure(Knowledge& knowledge, double position, std::size_t count);
   void addUp(double innovation, double variance);
 
   Matrix transition(double duration) const;
   Matrix processNoise(double duration) const;
-  /// Both for a step, kept while steps are alike.
+  /// Both for the step to sample k, kept while steps are alike.
   struct Step {
     double duration = 0.0;
+    double liveliness = 1.0;
     Matrix F = Matrix::Identity();
     Matrix Q = Matrix::Zero();
   };
-  const Step& step(double duration) const;
+  const Step& stepTo(std::size_t k) const;
+  double sumOfLogarithms() const;
 
   const std::vector<double>& time_;
   const Eigen::VectorXd& position_;
   const double interval_;
   const double T_;
 
+  std::vector<double> liveliness_;  // empty: 1
   mutable Step step_;
 
   std::size_t innovations_ = 0;

@@ -195,7 +195,7 @@ TEST(MotionSmootherTest, BridgesWhatWasNotMeasuredAndSaysHowUnsurely) {
   }
   const SmoothedMotion motion = smoothMotion(time, position);
   const auto deviation = [&](int k) { return std::sqrt(motion.covariance[static_cast<std::size_t>(k)](0, 0)); };
-  EXPECT_GT(deviation(415), 3.0 * deviation(600)) << "in the middle of the hole";
+  EXPECT_GT(deviation(415), 2.0 * deviation(600)) << "in the middle of the hole";
   for (int k = 0; k < 1000; ++k) {
     EXPECT_NEAR(motion.position[k], reach.position(time[static_cast<std::size_t>(k)]), 6.0 * deviation(k)) << k;
   }
