@@ -20,7 +20,7 @@ using Index = Eigen::Index;
 
 constexpr double kNoiseTimes = 5.0;  // a residual that sensors alone may leave
 constexpr int kRounds = 4;           // for weights, friction velocities and the payload's own inertia to settle
-constexpr std::array<double, 7> kFrictionVelocities = {0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2};  // [rad/s or m/s]
+constexpr std::array<double, 6> kFrictionVelocities = {0.0, 0.01, 0.02, 0.05, 0.1, 0.2};  // [rad/s or m/s]
 
 EffortMetadata commonMeaning(const std::vector<const Demonstration*>& recordings, const FitOptions& options) {
   if (recordings.empty()) throw ConfigurationError("there is no recording to fit a model to");
