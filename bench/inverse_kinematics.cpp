@@ -236,6 +236,7 @@ TrackScore scoreTracking(const RobotDescription& arm, const TrackingPath& path, 
   TrackingOptions options;
   options.max_velocity = limits.velocity;
   options.max_acceleration = limits.acceleration;
+  options.patience = 1.0;  // as demo_tool ik
   std::vector<double> times;
   for (std::size_t k = 0; k < path.poses.size(); ++k) times.push_back(static_cast<double>(k) / rate);
   const RobotModel kdl(arm);

@@ -12,15 +12,14 @@
 namespace demo_logger {
 namespace {
 
-constexpr double kInterval = 0.1;        // [s] between knots
-constexpr double kFurthest = 20.0;       // [s] planned ahead
-constexpr double kRenewed = 10.0;        // [s] before the end of a plan that is not the path's
-constexpr double kPatience = 1.0;        // [s] off a path that another branch could follow
-constexpr double kSearchInterval = 0.1;  // [s]
-constexpr double kNearPosition = 0.02;   // [m]
-constexpr double kNear = 0.1;            // [m] and [rad]
-constexpr int kSearch = 500;             // iterations
-constexpr double kSlack = 1e-9;          // [s] times are sums of decimal fractions
+constexpr double kInterval = 0.1;   // [s] between knots
+constexpr double kFurthest = 20.0;  // [s] planned ahead
+constexpr double kRenewed = 10.0;   // [s] before the end of a plan that is not the path's
+constexpr double kNear = 0.1;       // [m] and [rad]
+constexpr int kSearch = 500;        // iterations
+constexpr double kSlack = 1e-9;     // [s] times are sums of decimal fractions
+
+RigidPose rigid(const Eigen::Isometry3d& X) { return {X.linear(), X.translation()}; }
 
 }  // namespace
 
@@ -49,25 +48,9 @@ class PathTracker::Implementation {
       tracker.prefer(q, velocity);
     }
     const TrackedStep result = tracker.step(poses[row], times[row] - times[row - 1]);
-    const bool out = result.status == TrackingStatus::at_limit || result.status == TrackingStatus::unreachable;
-    if (lost && !out) plan_again = row + 1;
-    if (!lost && out) next_search = solvable_since = times[row];
-    lost = out;
-    if (lost) lookForAnotherBranch(row, result.position_error);
+    if (lost && result.in_reach) plan_again = row + 1;
+    lost = !result.in_reach;
     return result;
-  }
-
-  /// Off the path, though another branch could have followed it for a while: then that is where to go. Not for the sake
-  /// of the orientation alone, since on the way there the position is lost.
-  void lookForAnotherBranch(std::size_t row, double position_error) {
-    if (times[row] < next_search) return;
-    next_search = times[row] + kSearchInterval;
-    if (position_error < kNearPosition || !solveGlobally(row)) {
-      solvable_since = times[row];
-    } else if (times[row] - solvable_since > kPatience) {
-      plan_again = row + 1;
-      lost = false;
-    }
   }
 
   /// A posture at the pose of `row`, wherever it lies, into `q`.
@@ -81,11 +64,18 @@ class PathTracker::Implementation {
     knots.clear();
     plan_again = poses.size();
     for (std::size_t i = row; i < poses.size(); ++i) {
-      const RigidPose pose{poses[i].linear(), poses[i].translation()};
-      const bool first = i == row, last = i + 1 == poses.size();
+      const RigidPose pose = rigid(poses[i]);
+      const bool first = i == row;
+      // Nothing is planned across a jump: beyond it the arm will for a while be elsewhere.
+      const bool jumps = i + 1 < poses.size() && isJump(pose, rigid(poses[i + 1]), times[i + 1] - times[i]);
+      const bool last = i + 1 == poses.size() || jumps;
       if (!first && !last && times[i] - knots.back().time < kInterval - kSlack) continue;
       if (!first && !isRigid(pose)) continue;
       knots.push_back({times[i], pose});
+      if (jumps) {
+        plan_again = i + 1;
+        break;
+      }
       if (times[i] - times[row] > kFurthest && !last) {
         const auto renewal = std::upper_bound(times.begin(), times.end(), times[i] - kRenewed);
         plan_again = static_cast<std::size_t>(renewal - times.begin());
@@ -109,9 +99,8 @@ class PathTracker::Implementation {
   Tracker tracker;
   PosturePlanner planner;
   std::size_t next = 0;
-  std::size_t plan_again = 0;                      // row
-  bool lost = false;                               // out of reach in the last row
-  double next_search = 0.0, solvable_since = 0.0;  // [s] while lost
+  std::size_t plan_again = 0;  // row
+  bool lost = false;           // out of reach in the last row
   std::vector<PosturePlanner::Knot> knots;
   std::vector<JointVector> postures;
   Eigen::VectorXd q, velocity;

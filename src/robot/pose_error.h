@@ -22,6 +22,12 @@ inline double largerError(const Vector6& error) {
   return std::sqrt(std::max(error.head<3>().squaredNorm(), error.tail<3>().squaredNorm()));
 }
 
+/// Whether a target that is at `to` `dt` seconds after `from` did not move there, but is another one.
+inline bool isJump(const RigidPose& from, const RigidPose& to, double dt) {
+  constexpr double kFastest = 10.0;  // [m/s] or [rad/s]
+  return largerError(poseError(to, from)) > kFastest * dt;
+}
+
 /// Whether it is a place that one can compute with, its matrix a rotation as far as a quaternion of a few digits makes
 /// one.
 inline bool isRigid(const RigidPose& pose) {

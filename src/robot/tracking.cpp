@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "branch_search.h"
 #include "comfort.h"
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
@@ -29,7 +30,10 @@ constexpr double kHorizon = 0.1;         // [s] ahead of which the reachable is 
 constexpr double kFurthest = 0.5;        // [rad or m] … within this
 constexpr double kCatchUp = 0.9;         // share of the acceleration planned for catching up; the target needs some too
 constexpr double kReached = 0.3;         // share of the tolerance
-constexpr double kLongestPart = 0.005;   // [s]
+constexpr double kNearPosition =
+    0.02;                         // [m] so near it is for the orientation's sake alone that the arm changes over …
+constexpr double kAtRest = 0.02;  // [m/s] or [rad/s] … which is worth it for a target that moves no faster
+constexpr double kLongestPart = 0.005;  // [s]
 constexpr int kMostParts = 4;
 constexpr int kApproaches = 4;  // Gauss-Newton iterations, at most
 constexpr int kCorrections = 3;
@@ -57,7 +61,8 @@ class Tracker::Implementation {
         options(given),
         ranges(robot),
         limits(robot, given.max_velocity, given.max_acceleration),
-        solver(robot) {
+        solver(robot),
+        search(robot) {
     rest(ranges.middle());
   }
 
@@ -72,6 +77,7 @@ class Tracker::Implementation {
     has_preference = false;
     position_first = false;
     out_of_reach = 0.0;
+    settleHere();
     publish();
   }
 
@@ -102,7 +108,11 @@ class Tracker::Implementation {
     if (previous_dt == 0.0) previous_dt = dt;
     limits.box(q, velocity, previous_dt, dt, box);
     wishForNextStep(dt);
+    watchTarget(target, dt);
     const bool reachable = solveUnhurried(target, dt) || solveFromPreference(target, dt);
+    const bool elsewhere = !reachable && isReachableElsewhere(target, dt);
+    if (reachable) settleHere();
+    if (elsewhere && isTimeToChangeOver(dt)) solveFromPosture(target, search.posture());
     guardAgainstOvershoot(dt);
     x = unhurried.cwiseMax(box.lower).cwiseMin(box.upper);
     if (x != unhurried && !in_transit) {
@@ -114,7 +124,7 @@ class Tracker::Implementation {
     moveBy(dt);
     last_target = target;
     has_last_target = true;
-    return judge(target, reachable);
+    return judge(target, reachable, elsewhere);
   }
 
   /// Without a target: comes to rest.
@@ -125,7 +135,7 @@ class Tracker::Implementation {
     moveBy(dt);
     has_last_target = false;
     has_preference = false;
-    return {TrackingStatus::unreachable, kNan, kNan};
+    return {TrackingStatus::unreachable, kNan, kNan, false};
   }
 
   /// Where the target leaves it open, the arm makes the preferred motion; or without one moves on as it did, which
@@ -172,6 +182,7 @@ class Tracker::Implementation {
     }
     last_goal = q + unhurried;
     has_last_goal = true;
+    left_over = error.head<3>().norm();
     position_first = !reachable;
     out_of_reach = reachable ? 0.0 : solver.weighed(error, kRotationAfter);
     return reachable;
@@ -179,21 +190,61 @@ class Tracker::Implementation {
 
   /// Stuck where it is, but the preferred posture leads to the target: then that is where to go.
   bool solveFromPreference(const RigidPose& target, double dt) {
-    if (!has_preference) return false;
+    if (!has_preference || !solveFromPosture(target, preferred)) return false;
+    own = dt * preferred_velocity;
+    return true;
+  }
+
+  /// The way to the target is the one to where it is reached from `posture`.
+  bool solveFromPosture(const RigidPose& target, const JointVector& posture) {
     wide.lower = limits.lower() - q;
     wide.upper = limits.upper() - q;
-    other = (preferred - q).cwiseMax(wide.lower).cwiseMin(wide.upper);
+    other = (posture - q).cwiseMax(wide.lower).cwiseMin(wide.upper);
     wishes.displacement = other;
     wishes.calming = 0.0;
     wishes.rotation = 1.0;
     solver.approach(target, q, wishes, wide, kCorrections, other);
     if (largerError(solver.errorAt(target, q + other)) > kReached * options.tolerance) return false;
     unhurried = other;
-    own = dt * preferred_velocity;
+    own.setZero(size());
     in_transit = true;
     position_first = false;
     out_of_reach = 0.0;
     return true;
+  }
+
+  /// How long the target has rested, and whether it jumped while it was out of reach.
+  void watchTarget(const RigidPose& target, double dt) {
+    if (!has_last_target) return;
+    rested = largerError(poseError(target, last_target)) > kAtRest * dt ? 0.0 : rested + dt;
+    if (isJump(last_target, target, dt) && std::isfinite(options.patience)) is_changing_over = true;
+  }
+
+  bool isReachableElsewhere(const RigidPose& target, double dt) {
+    const double distance = (target.p - solver.kinematics().firstOrigin()).norm();
+    const bool found = distance <= solver.kinematics().reach() && search.find(target, public_q, dt);
+    if (!found) {
+      reachable_elsewhere_for = 0.0;
+      is_changing_over = false;
+    }
+    return found;
+  }
+
+  /// Not for the sake of the orientation alone while the target moves, since on the way there the position is lost.
+  bool isTimeToChangeOver(double dt) {
+    reachable_elsewhere_for += dt;
+    if (!std::isfinite(options.patience)) return false;
+    if (reachable_elsewhere_for > options.patience && (left_over > kNearPosition || rested > options.patience)) {
+      is_changing_over = true;
+    }
+    return is_changing_over;
+  }
+
+  /// In reach of the target, or without one.
+  void settleHere() {
+    search.forget();
+    reachable_elsewhere_for = 0.0;
+    is_changing_over = false;
   }
 
   /// A joint that is behind catches up only as fast as it can slow down again when it has.
@@ -217,14 +268,15 @@ class Tracker::Implementation {
     publish();
   }
 
-  TrackedStep judge(const RigidPose& target, bool reachable) {
+  TrackedStep judge(const RigidPose& target, bool reachable, bool elsewhere) {
     const Vector6 error = solver.errorAt(target, q);
-    TrackedStep result{TrackingStatus::tracked, error.head<3>().norm(), error.tail<3>().norm()};
+    TrackedStep result{TrackingStatus::tracked, error.head<3>().norm(), error.tail<3>().norm(), reachable};
     if (std::max(result.position_error, result.rotation_error) <= options.tolerance) return result;
     const double distance = (target.p - solver.kinematics().firstOrigin()).norm();
-    result.status = reachable                                ? TrackingStatus::speed_limited
+    result.status = reachable || is_changing_over            ? TrackingStatus::speed_limited
                     : distance > solver.kinematics().reach() ? TrackingStatus::unreachable
                     : touchesLimit()                         ? TrackingStatus::at_limit
+                    : elsewhere                              ? TrackingStatus::speed_limited
                                                              : TrackingStatus::unreachable;
     return result;
   }
@@ -244,13 +296,17 @@ class Tracker::Implementation {
   JointRanges ranges;
   MotionLimits limits;
   StepSolver solver;
+  BranchSearch search;
 
   // The state from step to step.
   JointVector q, velocity;
   double previous_dt = 0.0;   // [s] 0 before the first step
   double out_of_reach = 0.0;  // weighed error that is left however long the arm may take
   RigidPose last_target;
-  JointVector last_goal;  // where an arm in no hurry would have gone
+  JointVector last_goal;                 // where an arm in no hurry would have gone
+  double rested = 0.0;                   // [s] that the target has
+  double reachable_elsewhere_for = 0.0;  // [s] and not from here
+  double left_over = 0.0;                // [m] position error of an arm in no hurry
   JointVector preferred, preferred_velocity;
   Eigen::VectorXd public_q, public_velocity, q_before;
 
@@ -264,6 +320,7 @@ class Tracker::Implementation {
   bool has_preference = false;
   bool position_first = false;
   bool in_transit = false;
+  bool is_changing_over = false;  // to a posture that reaches the target
 };
 
 Tracker::Tracker(const RobotDescription& robot, const TrackingOptions& options) {
@@ -292,10 +349,10 @@ void Tracker::reset(const Eigen::VectorXd& q) {
 
 TrackedStep Tracker::stay(const Eigen::Isometry3d& X_base_target) {
   const RigidPose target{X_base_target.linear(), X_base_target.translation()};
-  if (!isRigid(target)) return {TrackingStatus::unreachable, kNan, kNan};
+  if (!isRigid(target)) return {TrackingStatus::unreachable, kNan, kNan, false};
   implementation_->last_target = target;
   implementation_->has_last_target = true;
-  return implementation_->judge(target, true);
+  return implementation_->judge(target, true, false);
 }
 
 void Tracker::prefer(const Eigen::VectorXd& posture, const Eigen::VectorXd& velocity) {

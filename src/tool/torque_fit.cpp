@@ -7,6 +7,7 @@
 
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
+#include "src/tool/number_option.h"
 #include "src/tool/verbs.h"
 
 namespace demo_logger {
@@ -68,11 +69,14 @@ void addTorqueFitOptions(CLI::App& verb, TorqueFitOptions& options) {
   verb.add_flag("--fit-friction,!--no-fit-friction", options.friction,
                 "fit friction (default: if the efforts are those of the motors)")
       ->needs("--fit");
-  verb.add_option("--model-error", options.model_error,
-                  "how far the fitted model may be off where no hand is, in parts of what a joint usually bears")
-      ->capture_default_str()
-      ->check(CLI::Range(1e-4, 1.0))
-      ->needs("--fit");
+  CLI::Option* model_error =
+      verb.add_option("--model-error", options.model_error,
+                      "how far the fitted model may be off where no hand is, in parts of what a joint usually bears");
+  model_error->capture_default_str()->needs("--fit");
+  NumberRange parts;
+  parts.lower = 1e-4;
+  parts.upper = 1.0;
+  requireNumber(*model_error, parts);
 }
 
 std::string stepOf(const TorqueFitOptions& options) {

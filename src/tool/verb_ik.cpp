@@ -21,6 +21,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double kPatience = 1.0;  // [s] stuck, before track changes over to another posture
+
 struct Options {
   std::vector<std::string> inputs;
   std::string output;
@@ -49,6 +51,7 @@ Result convert(const std::filesystem::path& input, const RobotDescription& arm, 
   if (options.mode == "track") {
     TrackTableOptions track;
     track.tracking = options.tracking;
+    track.tracking.patience = kPatience;
     track.tracking.tolerance = options.tolerance.value_or(track.tracking.tolerance);
     track.rate = options.rate;
     track.foresight = !options.no_foresight;
@@ -170,9 +173,11 @@ void addIkVerb(CLI::App& tool, int& exit_code) {
   verb->footer(
       "Example: demo_tool ik poses.csv -o joints.csv --urdf arm.urdf --base base_link --tip tool0\n"
       "Columns written: time if given, q_<joint>, residual (larger of [m] and [rad]), microseconds, status: solved or\n"
-      "failed; tracked, speed_limited, at_limit or unreachable. track starts at rest at the first row's seed "
-      "(default:\n"
-      "the middle of the ranges), the first row being the start itself.\n"
+      "failed; tracked, speed_limited, at_limit or unreachable. track starts at rest at the first row's seed\n"
+      "(default: the middle of the ranges), the first row being the start itself. It is local: what only another\n"
+      "posture reaches is speed_limited or at_limit until the arm, after 1 s or at once if the pose jumped, goes "
+      "there\n"
+      "through joint space; for the orientation alone only while the pose rests. unreachable is what solve fails at.\n"
       "Exit code: 1 if a row was not solved or tracked.");
   verb->callback([options, &exit_code] { exit_code = convertAll(*options); });
 }

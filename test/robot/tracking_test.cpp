@@ -239,6 +239,75 @@ TEST(TrackingTest, WithoutATargetTheArmComesToRestWithinItsLimits) {
   EXPECT_EQ(tracker.velocity().cwiseAbs().maxCoeff(), 0.0);
 }
 
+/// Poses anywhere in reach, each held for 6 s: some can only be met with another elbow or wrist.
+struct HeldPoses {
+  static constexpr std::size_t kSteps = 600;  // of 0.01 s
+  PathTracker::Poses poses;
+  std::vector<double> times;
+
+  HeldPoses(const RobotDescription& arm, int count) {
+    const RobotModel kdl(arm);
+    std::mt19937_64 generator(4);
+    for (int i = 0; i < count; ++i) {
+      poses.insert(poses.end(), kSteps, kdl.forwardKinematics(randomPosture(arm, generator)));
+    }
+    for (std::size_t k = 0; k < poses.size(); ++k) times.push_back(0.01 * static_cast<double>(k));
+  }
+};
+
+TEST(TrackingTest, WithPatienceWhatAnotherPostureReachesIsReached) {
+  const RobotDescription arm = describeOwnArm("demo_arm");
+  const HeldPoses held(arm, 12);
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(7);
+  TrackingOptions options = measuredOptions();
+  options.patience = 0.5;
+  for (const bool foresight : {true, false}) {
+    PathTracker ahead(arm, held.poses, held.times, start, options);
+    Tracker live(arm, options);
+    live.reset(start);
+    LimitsWatch watch(arm, start, 0.01);
+    for (std::size_t k = 0; k < held.poses.size(); ++k) {
+      const TrackedStep step = foresight ? ahead.step()
+                               : k == 0  ? live.stay(held.poses[0])
+                                         : live.step(held.poses[k], 0.01);
+      watch.see(foresight ? ahead.q() : live.q());
+      ASSERT_NE(step.status, TrackingStatus::unreachable) << "step " << k << ", foresight " << foresight;
+      if ((k + 1) % HeldPoses::kSteps == 0) {
+        EXPECT_EQ(step.status, TrackingStatus::tracked) << "step " << k << ", foresight " << foresight;
+      }
+    }
+  }
+}
+
+TEST(TrackingTest, WithoutPatienceItStaysLocalAndYetCallsNothingUnreachableThatIsNot) {
+  const RobotDescription arm = describeOwnArm("demo_arm");
+  const HeldPoses held(arm, 12);
+  Tracker tracker(arm, measuredOptions());
+  tracker.reset(Eigen::VectorXd::Zero(7));
+  tracker.step(held.poses[0], 0.01);
+  int stuck = 0;
+  const std::size_t before = allocation_count;
+  for (std::size_t k = 1; k < held.poses.size(); ++k) {
+    const TrackedStep step = tracker.step(held.poses[k], 0.01);
+    ASSERT_NE(step.status, TrackingStatus::unreachable) << "step " << k;
+    if ((k + 1) % HeldPoses::kSteps == 0 && !step.in_reach) ++stuck;
+  }
+  EXPECT_EQ(allocation_count, before) << "neither do searches allocate";
+  EXPECT_GT(stuck, 3) << "else these poses show nothing";
+}
+
+TEST(TrackingTest, WithinItsLengthButOutOfReachInEveryPostureIsUnreachable) {
+  const RobotDescription arm = describeOwnArm("two_link");
+  Tracker tracker(arm, measuredOptions());
+  tracker.reset(Eigen::Vector2d(0.3, 0.9));
+  Eigen::Isometry3d target = Eigen::Isometry3d::Identity();
+  target.translation() = Eigen::Vector3d(0.3, 0.4, 0.3);  // off the plane in which it moves
+  TrackedStep step;
+  for (int k = 0; k < 300; ++k) step = tracker.step(target, 0.01);
+  EXPECT_EQ(step.status, TrackingStatus::unreachable);
+  EXPECT_FALSE(step.in_reach);
+}
+
 TEST(TrackingTest, UnevenStepsKeepEveryLimit) {
   const RobotDescription arm = describeOwnArm("demo_arm");
   const RobotModel kdl(arm);

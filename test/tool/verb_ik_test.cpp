@@ -184,6 +184,8 @@ TEST(VerbIkTest, RefusesInOneSentenceAndWritesNothing) {
       {"kinematics poses.csv -o joints.csv --jobs many" + kTwoLink,
        "--jobs is \"many\", expected a whole number from 1 to 256\n"},
       {"torque poses.csv -o joints.csv --max-gap 0" + kTwoLink, "--max-gap is 0 s, expected a finite number above 0\n"},
+      {"torque poses.csv -o joints.csv --fit model.yaml --model-error 2" + kTwoLink,
+       "--model-error is 2, expected a finite number from 0.0001 to 1\n"},
       {"torque poses.csv -o joints.csv --control-period=-0.001" + kTwoLink,
        "--control-period is -0.001 s, expected a finite number above 0\n"},
       {"import poses.bag -o many --max-wait 11", "--max-wait is 11 s, expected a finite number from 0 to 10\n"},

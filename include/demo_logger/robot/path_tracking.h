@@ -13,7 +13,8 @@ namespace demo_logger {
 /// Follows a path of poses that is known beforehand, as a recording is: a Tracker with foresight. What the poses leave
 /// open, the elbow of a seven-joint arm above all, must be chosen with a view to what comes: the posture that is most
 /// comfortable now may end at a joint limit later. So a plan is made from where the arm is, up to 20 s ahead, and made
-/// anew where the path has led out of reach. The plan is advice; limits and errors are the Tracker's, step by step.
+/// anew where the path has led out of reach and the arm is back, if need be in another posture (`patience`). The plan
+/// is advice; limits and errors are the Tracker's, step by step.
 class PathTracker {
  public:
   using Poses = std::vector<Eigen::Isometry3d, Eigen::aligned_allocator<Eigen::Isometry3d>>;

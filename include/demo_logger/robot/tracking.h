@@ -13,13 +13,18 @@ struct TrackingOptions {
   double max_velocity = std::numeric_limits<double>::infinity();  // [rad/s or m/s] caps the joints' own limits
   double max_acceleration = 10.0;                                 // [rad/s² or m/s²] of each joint
   double tolerance = 1e-3;  // [m] and [rad] within which a target counts as tracked
+  // [s] that a target must have been out of reach from where the arm is, but not from another posture, before the arm
+  // goes there through joint space, which leads the tip away from the target for a while. At once if the target
+  // jumped. Infinity: never.
+  double patience = std::numeric_limits<double>::infinity();
 };
 
 enum class TrackingStatus {
   tracked,        // within the tolerance
-  speed_limited,  // could be reached, but not yet: velocity or acceleration is at its limit
+  speed_limited,  // could be reached, but not yet: velocity or acceleration is at its limit, or another posture is
+                  // needed
   at_limit,       // joints stand at their position limits
-  unreachable     // beyond the arm's reach, or no pose at all
+  unreachable     // beyond the arm's reach in every posture, as far as a search tells; or no pose at all
 };
 
 /// The word used in files: "tracked", "speed_limited", ….
@@ -29,6 +34,7 @@ struct TrackedStep {
   TrackingStatus status = TrackingStatus::unreachable;
   double position_error = 0.0;  // [m]; NaN where the target was no pose
   double rotation_error = 0.0;  // [rad]
+  bool in_reach = false;        // by moving on from the present posture, however long that takes
 };
 
 /// Follows a moving target pose of the tip, one step at a time, with a motion that the arm can make. Each step
@@ -37,7 +43,8 @@ struct TrackedStep {
 /// (dt there being the mean of the two steps' lengths)
 /// and from which the arm can still stop before its position limits. The limits hold whatever the target does. In what
 /// the target leaves open (a seventh joint, a singular posture) the arm moves on smoothly and away from its limits.
-/// Out of reach, position comes before orientation. Continuous joints are never wrapped.
+/// Out of reach, position comes before orientation. Continuous joints are never wrapped. A step is local: what can only
+/// be reached with another elbow is out of reach, unless `patience` lets the arm change over.
 ///
 /// All state is in the object; nothing is allocated in a step; the number of iterations is bounded.
 class Tracker {
