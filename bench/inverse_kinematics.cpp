@@ -221,6 +221,39 @@ void measureSolve(const std::vector<Subject>& subjects, int poses) {
   printRow("all", "both", "KDL LMA", marquardt_all);
 }
 
+/// Every joint that has limits at one of them, the others anywhere: what a descent within limits finds worst.
+Eigen::VectorXd randomCorner(const RobotDescription& arm, std::mt19937_64& generator) {
+  Eigen::VectorXd q = randomPosture(arm, generator);
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
+    if (joint.type != JointType::continuous) q[i] = generator() % 2 == 0 ? joint.lower : joint.upper;
+  }
+  return q;
+}
+
+void measureCorners(const std::vector<Subject>& subjects) {
+  constexpr int kPoses = 1000;
+  std::printf("\n## Poses reached with every joint at a limit, from the middle\n\n");
+  std::printf("| arm | poses | not solved (1e-5) | mean µs |\n|---|---|---|---|\n");
+  for (const Subject& subject : subjects) {
+    const RobotModel kdl(subject.arm);
+    const InverseKinematics solver(subject.arm);
+    std::mt19937_64 generator(5);
+    SolveOptions options;
+    options.tolerance = 1e-5;
+    int failed = 0;
+    double seconds = 0.0;
+    Eigen::VectorXd q;
+    for (int k = 0; k < kPoses; ++k) {
+      const Eigen::Isometry3d target = kdl.forwardKinematics(randomCorner(subject.arm, generator));
+      const double begin = threadSeconds();
+      if (!solver.solve(target, solver.middle(), q, options).solved) ++failed;
+      seconds += threadSeconds() - begin;
+    }
+    std::printf("| %s | %d | %d | %.1f |\n", subject.name.c_str(), kPoses, failed, 1e6 * seconds / kPoses);
+  }
+}
+
 struct TrackScore {
   double position = 0.0, rotation = 0.0;  // [mm], [mrad] worst
   double within = 0.0;                    // share of the steps within 1 mm and 1 mrad
@@ -321,5 +354,6 @@ int main(int argc, char** argv) {
   const int poses = argc > 2 ? std::atoi(argv[2]) : 10000;
   const std::vector<Subject> subjects = solverSubjects();
   measureSolve(subjects, poses);
+  measureCorners(subjects);
   measureTracking(subjects);
 }

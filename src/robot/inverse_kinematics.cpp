@@ -18,7 +18,8 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr double kNearEnough = 0.3;    // [rad or m] a solution this near to the seed is not improved upon
+constexpr double kNearEnough = 0.3;  // [rad or m] a solution this near to the seed is not improved upon
+constexpr int kStartsBeforeCorners = 40;
 constexpr int kStartsOutOfReach = 20;  // enough for the best residual of what the arm is too short for
 
 /// The best posture so far: solved ones before others, among solved ones the nearest to the seed.
@@ -76,9 +77,7 @@ class InverseKinematics::Implementation {
         if (i == 1) nearest = table.nearest(target, descent.perMetre());
         // Near to the target's pose to find any branch; once there is one, near to the seed to find a better one.
         if (best.solved() && last_start - i + 1 == options.further_starts) nearest.sortByMove(i - 1, seed);
-        if (!nearest.posture(i - 1, start)) {
-          ranges.randomPosture(options.restart_seed, static_cast<std::uint64_t>(i), start);
-        }
+        if (!nearest.posture(i - 1, start)) restart(options.restart_seed, i, start);
       }
       descent.run(target, start, options.tolerance, iterations_left, found);
       ++solution.starts;
@@ -95,6 +94,14 @@ class InverseKinematics::Implementation {
     solution.solved = solution.residual <= options.tolerance;
     solution.iterations = options.most_iterations - iterations_left;
     return solution;
+  }
+
+  /// Where so many starts have failed, the arm may have to stand at its limits, which is what a descent that is kept
+  /// within limits finds worst: then one start in four is from there.
+  void restart(std::uint64_t seed, int i, JointVector& start) const {
+    const auto counter = static_cast<std::uint64_t>(i);
+    if (i < kStartsBeforeCorners || i % 4 != 0) return ranges.randomPosture(seed, counter, start);
+    ranges.cornerPosture(seed, counter / 4, start);
   }
 
   std::string name;

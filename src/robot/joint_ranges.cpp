@@ -74,6 +74,17 @@ double JointRanges::largestMove(const JointVector& from, const JointVector& to) 
   return largest;
 }
 
+void JointRanges::cornerPosture(std::uint64_t key, std::uint64_t counter, JointVector& q) const {
+  constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15U;  // times an odd number, modulo a power of two, is a permutation
+  randomPosture(key, counter, q);
+  std::uint64_t which = counter * kOdd;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    if (!std::isfinite(upper_[i] - lower_[i])) continue;
+    q[i] = (which & 1U) != 0 ? upper_[i] : lower_[i];
+    which >>= 1U;
+  }
+}
+
 void JointRanges::randomPosture(std::uint64_t key, std::uint64_t counter, JointVector& q) const {
   const auto n = static_cast<std::uint64_t>(q.size());
   for (Eigen::Index i = 0; i < q.size(); ++i) {

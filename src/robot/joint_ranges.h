@@ -30,6 +30,10 @@ class JointRanges {
   /// instead of remembering keeps a call's result free of the calls before.
   void randomPosture(std::uint64_t key, std::uint64_t counter, JointVector& q) const;
 
+  /// Likewise, but with every joint that has limits at one of them: counting visits every such corner once before it
+  /// comes to the first one again.
+  void cornerPosture(std::uint64_t key, std::uint64_t counter, JointVector& q) const;
+
  private:
   JointVector stated_lower_, stated_upper_;
   JointVector lower_, upper_;

@@ -49,6 +49,24 @@ struct TwoLinkSolutions {
 };
 
 /// On this arm a position with an orientation leaves one solution, so the tip's own orientation picks the branch.
+TEST(InverseKinematicsTest, PosesReachedWithEveryJointAtALimitAreSolved) {
+  for (const Subject& subject : solverSubjects()) {
+    const RobotDescription& arm = subject.arm;
+    const RobotModel kdl(arm);
+    const InverseKinematics solver(arm);
+    Eigen::VectorXd corner(static_cast<Eigen::Index>(arm.joints.size())), q;
+    for (unsigned which = 0; which < 64; ++which) {
+      for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+        const ArmJoint& joint = arm.joints[i];
+        const double limit = (which >> i) % 2 == 0 ? joint.lower : joint.upper;
+        corner[static_cast<Eigen::Index>(i)] = std::isfinite(limit) ? limit : 1.0;
+      }
+      EXPECT_TRUE(solver.solve(kdl.forwardKinematics(corner), solver.middle(), q).solved)
+          << subject.name << ", corner " << which;
+    }
+  }
+}
+
 TEST(InverseKinematicsTest, TheTwoLinkArmGetsItsClosedFormSolution) {
   const InverseKinematics solver(describeOwnArm("two_link"));
   const Eigen::Vector2d straight(0.0, 0.0);
