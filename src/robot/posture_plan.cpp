@@ -112,6 +112,15 @@ PosturePlanner::Candidate PosturePlanner::child(const Candidate& parent, const J
   return candidate;
 }
 
+/// Of the tip, metres made comparable to radians.
+JacobianMatrix PosturePlanner::scaledJacobian(const JointVector& q) const {
+  RigidPose pose;
+  JacobianMatrix jacobian;
+  kinematics_.forward(q, pose, jacobian);
+  jacobian.topRows<3>() *= descent_.perMetre();
+  return jacobian;
+}
+
 double PosturePlanner::discomfort(const JointVector& q) const {
   double cost = 0.0;
   for (Eigen::Index i = 0; i < q.size(); ++i) {
@@ -120,10 +129,7 @@ double PosturePlanner::discomfort(const JointVector& q) const {
     const double share = (q[i] - limits_.lower()[i]) / half - 1.0;
     cost += kOffCentre * share * share + kNearLimit / std::max(1e-3, 1.0 - share * share);
   }
-  RigidPose pose;
-  JacobianMatrix jacobian;
-  kinematics_.forward(q, pose, jacobian);
-  jacobian.topRows<3>() *= descent_.perMetre();
+  const JacobianMatrix jacobian = scaledJacobian(q);
   Matrix6 A = jacobian * jacobian.transpose();
   A.diagonal().array() += 1e-5;
   return cost - kSingular * std::log(A.determinant());
@@ -131,10 +137,7 @@ double PosturePlanner::discomfort(const JointVector& q) const {
 
 /// A direction in which the joints can move with the tip at rest, of largest component 1.
 bool PosturePlanner::selfMotion(const JointVector& q, int which, JointVector& direction) const {
-  RigidPose pose;
-  JacobianMatrix jacobian;
-  kinematics_.forward(q, pose, jacobian);
-  jacobian.topRows<3>() *= descent_.perMetre();
+  const JacobianMatrix jacobian = scaledJacobian(q);
   Matrix6 A = jacobian * jacobian.transpose();
   A.diagonal().array() += 1e-6;
   // Any vector will do that is not, by chance, one of those that move the tip.

@@ -36,6 +36,7 @@ class PosturePlanner {
   void addChildren(const std::vector<Candidate>& parents, std::size_t parent, const Knot& knot, double dt,
                    std::vector<Candidate>& children) const;
   Candidate child(const Candidate& parent, const JointVector& guess, const Knot& knot, double dt) const;
+  JacobianMatrix scaledJacobian(const JointVector& q) const;
   double discomfort(const JointVector& q) const;
   bool selfMotion(const JointVector& q, int which, JointVector& direction) const;
   bool reach(const Knot& knot, const JointVector& guess, PoseDescent::Found& found) const;
