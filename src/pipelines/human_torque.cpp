@@ -3,11 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "arm_motion.h"
 #include "demo_logger/robot/robot_model.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/not_a_number.h"
 #include "joint_columns.h"
 
 namespace demo_logger {
@@ -15,7 +15,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kRecovered = "human torque/";
 constexpr double kSingular = 1e-6;  // of the largest singular value, below which a direction says nothing
 

@@ -1,11 +1,11 @@
 #include "demo_logger/pipelines/human_torque_columns.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "demo_logger/formats/column_names.h"
+#include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 #include "joint_columns.h"
 
@@ -15,7 +15,6 @@ namespace {
 using Index = Eigen::Index;
 using Places = std::vector<std::size_t>;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRoomForJitter = 1.1;  // of the stamps, under the cut-off that is proposed
 
 /// A fault that is told once, and counted.

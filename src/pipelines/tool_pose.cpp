@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "demo_logger/robot/robot_model.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/not_a_number.h"
 #include "joint_columns.h"
 
 namespace demo_logger {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Column> poseColumns(const RobotDescription& robot) {
   const std::string source = "forward kinematics of " + robot.tip + " in " + robot.base;

@@ -7,13 +7,12 @@
 #include <limits>
 
 #include "demo_logger/trajectory/interpolation.h"
+#include "demo_logger/trajectory/not_a_number.h"
 
 namespace demo_logger {
 namespace {
 
 using Entry = StreamBuffer::Messages::value_type;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Chosen take(Entry& entry, Nanoseconds instant, double* values) {
   std::copy(entry.second.values.begin(), entry.second.values.end(), values);

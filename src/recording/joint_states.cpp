@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kQuantities = 3;  // position, velocity, effort
 
 Nanoseconds steadyOf(const Arrival& arrival) { return arrival.steady != 0 ? arrival.steady : arrival.receipt; }

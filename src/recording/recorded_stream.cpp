@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Typed by hand with three digits, a quaternion is off by less.
 constexpr double kUnitTolerance = 1e-3;
 

@@ -6,6 +6,7 @@
 
 #include "arm_kinematics.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 #include "joint_ranges.h"
 #include "pose_descent.h"
@@ -15,7 +16,6 @@
 namespace demo_logger {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr double kNearEnough = 0.3;  // [rad or m] a solution this near to the seed is not improved upon
@@ -137,9 +137,9 @@ Solution InverseKinematics::solve(const Eigen::Isometry3d& X_base_tip, const Eig
   q.resize(n);
   const RigidPose target{X_base_tip.linear(), X_base_tip.translation()};
   if (!isRigid(target) || !seed.allFinite()) {
-    q.setConstant(kNan);
+    q.setConstant(kNaN);
     Solution refused;
-    refused.residual = kNan;
+    refused.residual = kNaN;
     return refused;
   }
   JointVector result;

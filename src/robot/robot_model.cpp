@@ -6,19 +6,17 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
-#include <limits>
 #include <mutex>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/not_a_number.h"
 #include "kdl_chain.h"
 
 namespace demo_logger {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 RobotDescription withJoints(RobotDescription description) {
   if (description.joints.empty()) throw ModelError("robot '" + description.name + "' has no joint to move");
@@ -84,7 +82,7 @@ class RobotModel::Implementation {
       result = value;
       return true;
     }
-    result = Found::PlainObject::Constant(value.rows(), value.cols(), kNan);
+    result = Found::PlainObject::Constant(value.rows(), value.cols(), kNaN);
     return false;
   }
 
@@ -231,7 +229,7 @@ bool RobotModel::friction(const Eigen::VectorXd& dq, Eigen::VectorXd& result) co
     result[i] = own.frictionOf(i, dq[i]);
     finite = finite && std::isfinite(result[i]);
   }
-  if (!finite) result.setConstant(kNan);
+  if (!finite) result.setConstant(kNaN);
   return finite;
 }
 

@@ -7,6 +7,7 @@
 #include "branch_search.h"
 #include "comfort.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 #include "joint_ranges.h"
 #include "motion_limits.h"
@@ -15,8 +16,6 @@
 
 namespace demo_logger {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Weight of the wanted displacement. It errs by half its root of how far the wish is off: 1e-6 m or rad for the
 // comfortable motion, 1e-4 for a preferred one, which in return keeps its way through singular postures.
@@ -135,7 +134,7 @@ class Tracker::Implementation {
     moveBy(dt);
     has_last_target = false;
     has_preference = false;
-    return {TrackingStatus::unreachable, kNan, kNan, false};
+    return {TrackingStatus::unreachable, kNaN, kNaN, false};
   }
 
   /// Where the target leaves it open, the arm makes the preferred motion; or without one moves on as it did, which
@@ -349,7 +348,7 @@ void Tracker::reset(const Eigen::VectorXd& q) {
 
 TrackedStep Tracker::stay(const Eigen::Isometry3d& X_base_target) {
   const RigidPose target{X_base_target.linear(), X_base_target.translation()};
-  if (!isRigid(target)) return {TrackingStatus::unreachable, kNan, kNan, false};
+  if (!isRigid(target)) return {TrackingStatus::unreachable, kNaN, kNaN, false};
   implementation_->last_target = target;
   implementation_->has_last_target = true;
   return implementation_->judge(target, true, false);
