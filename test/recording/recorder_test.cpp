@@ -302,8 +302,7 @@ TEST_F(RecorderTest, RefusesAConfigurationNamingTheValueAndWhatWasExpected) {
   };
   RecorderConfiguration wrong = configuration();
   wrong.split_gap = 0.05;
-  EXPECT_EQ(messageOf(wrong),
-            "split_gap is 0.05 s, expected 0 (never) or more than max_wait, which is 0.1 s.");
+  EXPECT_EQ(messageOf(wrong), "split_gap is 0.05 s, expected 0 (never) or more than max_wait, which is 0.1 s.");
   wrong = configuration();
   wrong.metadata.channel = "telepathy";
   EXPECT_EQ(messageOf(wrong), "channel is \"telepathy\", expected teleoperation, kinesthetic, vr or unknown.");

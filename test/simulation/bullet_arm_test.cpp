@@ -225,7 +225,7 @@ TEST(BulletArmTest, BadTorquesAreRefusedBeforeAnythingMoves) {
             "simulated robot 'pendulum': a step of 0 s in 4 parts, expected a positive time and at least one "
             "part");
   EXPECT_EQ(errorOf([&] { arm.step(vector1(0.0), kPeriod, 0); }),
-            "simulated robot 'pendulum': a step of 0.001000 s in 0 parts, expected a positive time and at least one "
+            "simulated robot 'pendulum': a step of 0.001 s in 0 parts, expected a positive time and at least one "
             "part");
   EXPECT_EQ(arm.state().q, vector1(0.0));
 }

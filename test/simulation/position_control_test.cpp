@@ -257,7 +257,8 @@ TEST(TrajectoryTest, WhatTheArmCannotFollowIsRefusedAndTheOldPathGoesOn) {
             "refused: point 1 of a path has 2 values, expected 7, one for each joint");
   Eigen::VectorXd not_a_number = end;
   not_a_number[1] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(refusalOf(makePath({makePoint(1.0, not_a_number)})), "refused: joint_2 in point 1 of a path is nan rad, expected at most 1e+06 rad either way");
+  EXPECT_EQ(refusalOf(makePath({makePoint(1.0, not_a_number)})),
+            "refused: joint_2 in point 1 of a path is nan rad, expected at most 1e+06 rad either way");
   ArmCommand past = makePath({makePoint(1.0, end)});
   bench.wait(2000);
   past.stamp = kMillisecond;

@@ -12,9 +12,9 @@ namespace demo_logger {
 
 /// What a CSV must hold to be of use.
 struct CsvExpectation {
-  std::vector<std::string> columns;  // beside `time`
-  bool time = true;                  // a column `time` [s], finite and strictly increasing
-  std::vector<std::string> words = {};   // columns in which a cell may be a word instead of a number
+  std::vector<std::string> columns;     // beside `time`
+  bool time = true;                     // a column `time` [s], finite and strictly increasing
+  std::vector<std::string> words = {};  // columns in which a cell may be a word instead of a number
 };
 
 /// Reads a CSV of numbers row by row, in memory for one row: those this project writes, and those of others as far as

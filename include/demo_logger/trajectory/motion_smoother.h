@@ -23,8 +23,8 @@ struct SmoothedMotion {
 /// ways in time (no delay). The model is a random snap,
 ///   d⁴q/dt⁴ = w,  E[w(t) w(t')] = S δ(t − t'),   z_k = q(t_k) + v_k,  Var v_k = r,
 /// whose posterior a Kalman filter and smoother give exactly, in time linear in the samples. Nothing is known of the
-/// motion beforehand. S and r follow from the data by maximum likelihood (T from some 16 000 samples spread over a longer
-/// record): nothing is to be tuned.
+/// motion beforehand. S and r follow from the data by maximum likelihood (T from some 16 000 samples spread over a
+/// longer record): nothing is to be tuned.
 ///
 /// The samples must number at least kFewestSamples finite ones. Positions that are NaN count as not measured: the
 /// estimate bridges them, and its covariance says how well. Throws Error where the times do not increase, are not
