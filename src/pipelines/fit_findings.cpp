@@ -90,6 +90,40 @@ class Findings {
         last.link);
   }
 
+  void describeBody(Index i) {
+    constexpr Index kValues = LinearInertia::RowsAtCompileTime;
+    const ArmJoint& joint = problem_.robot().joints[static_cast<std::size_t>(i)];
+    const LinearInertia values =
+        problem_.describedBodies().segment<kValues>(kValues * i) + estimate_.value.segment<kValues>(kValues * i);
+    const auto C = estimate_.covariance.block<kValues, kValues>(kValues * i, kValues * i);
+    Eigen::Matrix<double, kValues, kValues> slope;  // of (mass, centre, inertia about it)
+    const auto aboutCenter = [](const LinearInertia& parameters) {
+      const BodyInertia body = bodyInertia(parameters);
+      const Eigen::Matrix3d& I = body.inertia;
+      LinearInertia about;
+      about << body.mass, body.center, I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2), I(2, 2);
+      return about;
+    };
+    for (Index k = 0; k < kValues; ++k) {
+      constexpr double kAside = 1e-6;
+      slope.col(k) = (aboutCenter(values + kAside * LinearInertia::Unit(k)) -
+                      aboutCenter(values - kAside * LinearInertia::Unit(k))) /
+                     (2.0 * kAside);
+    }
+    const LinearInertia deviations = (slope * C * slope.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+    CalibratedBody body = calibratedBody(bodyInertia(values));
+    body.mass.deviation = deviations[0];
+    for (std::size_t k = 0; k < 3; ++k) body.center[k].deviation = deviations[1 + static_cast<Index>(k)];
+    for (std::size_t k = 0; k < 6; ++k) body.inertia[k].deviation = deviations[4 + static_cast<Index>(k)];
+    result_.calibration.bodies[joint.name] = body;
+    std::string center;
+    for (std::size_t k = 0; k < 3; ++k) {
+      center += (k == 0 ? "" : ", ") + withDeviation(body.center[k].value, body.center[k].deviation);
+    }
+    say(joint.link + ": " + withDeviation(body.mass.value, body.mass.deviation) + " kg at (" + center +
+        ") m, where the description has " + print(joint.body.mass, 3) + " kg");
+  }
+
   void describeJoint(Index i) {
     const ArmJoint& joint = problem_.robot().joints[static_cast<std::size_t>(i)];
     const char* const torque = joint.type == JointType::prismatic ? " N" : " N m";
@@ -150,7 +184,12 @@ void describeFit(const FitProblem& problem, const RidgeEstimate& estimate, const
   result.calibration.side = meaning.side;
   result.calibration.tip = problem.robot().tip;
   Findings findings(problem, estimate, result);
-  findings.describePayload();
+  if (problem.hasFreeBodies()) {
+    result.calibration.payload.reset();  // the last body has it
+    for (Index i = 0; i < problem.regression().joints; ++i) findings.describeBody(i);
+  } else {
+    findings.describePayload();
+  }
   for (Index i = 0; i < problem.regression().joints; ++i) findings.describeJoint(i);
   if (!problem.fitsFriction()) {
     result.findings.emplace_back(

@@ -12,6 +12,7 @@
 #include "fit_problem.h"
 #include "hand_free_search.h"
 #include "joint_columns.h"
+#include "possible_bodies.h"
 
 namespace demo_logger {
 namespace {
@@ -79,6 +80,25 @@ class Fit {
       judgeResiduals();
     }
     estimate_ = solveRegression(problem_.regression(), sums(), variance_.cwiseInverse(), problem_.prior());
+  }
+
+  /// The nearest bodies that there can be, and what goes with them of the drives.
+  void makeBodiesPossible() {
+    const Index count = problem_.regression().inertial.cols();
+    const Eigen::VectorXd described = problem_.describedBodies();
+    const Eigen::VectorXd before = estimate_.value.head(count);
+    const auto& C = estimate_.covariance;
+    const Eigen::VectorXd possible =
+        nearestPossibleBodies(described + before, C.topLeftCorner(count, count), described) - described;
+    const Index drives = estimate_.value.size() - count;
+    estimate_.value.tail(drives) +=
+        C.bottomLeftCorner(drives, count) * C.topLeftCorner(count, count).ldlt().solve(possible - before);
+    estimate_.value.head(count) = possible;
+    for (Index i = count; i < estimate_.value.size(); ++i) {
+      if (problem_.prior().not_negative[static_cast<std::size_t>(i)]) {
+        estimate_.value[i] = std::max(0.0, estimate_.value[i]);
+      }
+    }
   }
 
   const RidgeEstimate& estimate() const { return estimate_; }
@@ -228,9 +248,14 @@ FitResult fitModel(const RobotDescription& robot, const std::vector<const Demons
   FitProblem problem(robot, options, meaning, equationsOf(robot, recordings, options));
   HandFreeTolerance tolerance{options.model_error * problem.usualTorque(), problem.noise()};
   tolerance.largest = tolerance.largest.cwiseMax(kNoiseTimes * tolerance.noise);
-  const std::vector<bool> rows = options.hand_free.empty() ? findHandFreeRows(problem.equations(), problem.regression(),
-                                                                              tolerance, problem.prior())
-                                                           : rowsWithin(options.hand_free, problem.equations());
+  std::vector<bool> rows;
+  if (options.hand_free.empty()) {
+    rows = findHandFreeRows(problem.equations(), problem.regression(), tolerance, problem.prior());
+    Fit(problem, rows, tolerance.largest).run();
+    rows = keepUsualRows(problem.equations(), problem.regression(), tolerance, problem.prior(), rows);
+  } else {
+    rows = rowsWithin(options.hand_free, problem.equations());
+  }
   FitResult result;
   describeRows(problem, rows, result);
   result.undetermined = whyUndetermined(result, options);
@@ -239,6 +264,11 @@ FitResult fitModel(const RobotDescription& robot, const std::vector<const Demons
   Fit fit(problem, rows, tolerance.largest);
   result.residual_start = fit.residual(problem.prior().mean);
   fit.run();
+  if (options.bodies) {
+    problem.freeBodies();
+    fit.run();
+    fit.makeBodiesPossible();
+  }
   result.residual = fit.residual(fit.estimate().value);
   describeFit(problem, fit.estimate(), options, meaning, result);
   return result;

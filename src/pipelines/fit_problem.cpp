@@ -16,6 +16,8 @@ constexpr double kMass = 1.0;      // [kg]
 constexpr double kLeverage = 0.1;  // [kg m]
 constexpr double kBias = 0.02;
 constexpr double kFriction = 0.05;
+constexpr double kMassShare = 0.3;      // of a body's mass, if all bodies are free
+constexpr double kAside = 0.03;         // [m] of its centre
 constexpr double kUsualLimit = 50.0;    // [N m or N] where the description has none
 constexpr double kUsualVelocity = 2.0;  // [rad/s or m/s] ditto
 constexpr double kLeastLeft = 0.05;     // of the last body, whatever is taken away
@@ -156,7 +158,19 @@ BodyInertia FitProblem::payload(const Eigen::VectorXd& theta) const {
   return body;
 }
 
+/// What the drives do not explain.
+Eigen::VectorXd FitProblem::modelledTorque(const RobotModel& model, Index row) const {
+  Eigen::VectorXd torque = model.inverseDynamics(equations_.position.row(row), equations_.velocity.row(row),
+                                                 equations_.acceleration.row(row));
+  if (!shows_drives_) return torque;
+  for (Index i = 0; i < regression_.joints; ++i) {
+    torque[i] += robot_.joints[static_cast<std::size_t>(i)].motor_inertia * equations_.acceleration(row, i);
+  }
+  return torque;
+}
+
 void FitProblem::assumePayload(const Eigen::VectorXd& theta) {
+  if (hasFreeBodies()) return;
   constexpr double kFarthest = 1.0;  // [m] a centre beyond that tells of a mass that is not known yet
   const BodyInertia body = payload(theta);
   const bool is_usable = body.mass != 0.0 && body.center.norm() < kFarthest;
@@ -165,17 +179,54 @@ void FitProblem::assumePayload(const Eigen::VectorXd& theta) {
   Eigen::VectorXd assumed = Eigen::VectorXd::Zero(kWeightParameters);
   if (is_usable) assumed << body.mass, body.mass * body.center;
   regression_.unexplained.resize(equations_.rows(), n);
-  Eigen::VectorXd torque(n);
   for (Index k = 0; k < equations_.rows(); ++k) {
-    model.inverseDynamics(equations_.position.row(k), equations_.velocity.row(k), equations_.acceleration.row(k),
-                          torque);
-    if (shows_drives_) {
-      for (Index i = 0; i < n; ++i) {
-        torque[i] += robot_.joints[static_cast<std::size_t>(i)].motor_inertia * equations_.acceleration(k, i);
-      }
+    const Eigen::VectorXd explained = modelledTorque(model, k) - regression_.inertial.middleRows(k * n, n) * assumed;
+    regression_.unexplained.row(k) = equations_.effort.row(k) - explained.transpose();
+  }
+}
+
+Eigen::VectorXd FitProblem::describedBodies() const {
+  constexpr Index kValues = LinearInertia::RowsAtCompileTime;
+  Eigen::VectorXd bodies(kValues * regression_.joints);
+  for (Index i = 0; i < regression_.joints; ++i) {
+    bodies.segment<kValues>(kValues * i) = linearInertia(robot_.joints[static_cast<std::size_t>(i)].body);
+  }
+  return bodies;
+}
+
+void FitProblem::freeBodies() {
+  constexpr Index kValues = LinearInertia::RowsAtCompileTime;
+  const Index n = regression_.joints;
+  const Index rows = equations_.rows();
+  const RobotModel described(robot_);
+  for (Index k = 0; k < rows; ++k) {
+    regression_.unexplained.row(k) = equations_.effort.row(k) - modelledTorque(described, k).transpose();
+  }
+
+  const auto drives = TorqueRegression::kOfJoint * n;
+  const Prior before = prior_;
+  prior_.mean = prior_.deviation = Eigen::VectorXd::Zero(kValues * n + drives);
+  prior_.mean.tail(drives) = before.mean.tail(drives);
+  prior_.deviation.tail(drives) = before.deviation.tail(drives);
+  prior_.not_negative.assign(static_cast<std::size_t>(kValues * n), false);
+  prior_.not_negative.insert(prior_.not_negative.end(), before.not_negative.begin() + kWeightParameters,
+                             before.not_negative.end());
+  regression_.inertial.resize(rows * n, kValues * n);
+  for (Index i = 0; i < n; ++i) {
+    InertiaRegressor body(robot_, static_cast<std::size_t>(i), Eigen::Isometry3d::Identity(), kValues);
+    for (Index k = 0; k < rows; ++k) {
+      body.evaluate(equations_.position.row(k), equations_.velocity.row(k), equations_.acceleration.row(k),
+                    regression_.inertial.block(k * n, kValues * i, n, kValues));
     }
-    torque -= regression_.inertial.middleRows(k * n, n) * assumed;
-    regression_.unexplained.row(k) = equations_.effort.row(k) - torque.transpose();
+    const BodyInertia& described_body = robot_.joints[static_cast<std::size_t>(i)].body;
+    const bool is_last = i + 1 == n;
+    const double mass = described_body.mass + (is_last ? before.deviation[0] : 0.0);
+    const double radius = described_body.center.norm() + kAside;
+    auto deviation = prior_.deviation.segment<kValues>(kValues * i);
+    deviation[0] = kMassShare * mass;
+    deviation.segment<3>(1).setConstant(mass * kAside + kMassShare * mass * described_body.center.norm());
+    deviation.tail<6>().setConstant(2.0 * mass * kAside * radius + kMassShare * described_body.inertia.trace());
+    if (is_last) deviation.head<kWeightParameters>() += before.deviation.head<kWeightParameters>();
   }
 }
 

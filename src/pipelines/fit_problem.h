@@ -29,6 +29,13 @@ class FitProblem {
   Eigen::VectorXd usualTorque() const;
   Eigen::VectorXd noise() const;
 
+  /// From now on what is to be found is not a payload, but by how much the ten mass properties of each body differ from
+  /// the description's.
+  void freeBodies();
+  bool hasFreeBodies() const { return regression_.inertial.cols() > kWeightParameters; }
+  /// Those of the description, one body after the other.
+  Eigen::VectorXd describedBodies() const;
+
   /// Takes the inertia of a payload of these parameters for granted from now on.
   void assumePayload(const Eigen::VectorXd& theta);
   /// The velocity v of joint i, in sign(q̇) = tanh(q̇ / v); 0: a step.
@@ -48,6 +55,7 @@ class FitProblem {
   void setDrivePrior(const FitOptions& options);
   void fillColumns();
   void findWhatSays();
+  Eigen::VectorXd modelledTorque(const RobotModel& model, Eigen::Index row) const;
 
   RobotDescription robot_;  // with known bodies and drives of the start, without its payload
   EffortMetadata meaning_;

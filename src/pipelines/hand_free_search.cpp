@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -17,7 +18,7 @@ constexpr std::size_t kShortestRun = 3;  // windows; a hand that passes through 
 constexpr int kMostRounds = 15;
 constexpr int kTightenings = 3;
 constexpr double kUsual = 3.0;     // times the usual residual still counts as usual
-constexpr double kTightest = 0.2;  // of the tolerance; no model is so good that a hand's touch could be less
+constexpr double kTightest = 0.3;  // of the tolerance; no model is so good that a hand's touch could be less
 
 struct Window {
   Index first;
@@ -55,26 +56,40 @@ class Search {
         least_(kTightest * tolerance_.largest),
         prior_(prior) {}
 
-  std::vector<bool> run() {
+  std::vector<bool> largest() {
     std::vector<bool> best(windows_.size(), false);
     for (const std::size_t seed : seeds()) {
       const std::vector<bool> grown = grow(seed);
       if (said(grown) > said(best)) best = grown;
     }
-    for (int round = 0; round < kTightenings && said(best) > 0; ++round) best = tightened(best);
-    return rowsOf(best);
+    return usual(rowsOf(best));
+  }
+
+  std::vector<bool> usual(const std::vector<bool>& rows) {
+    std::vector<bool> chosen;
+    for (const Window& window : windows_) {
+      const auto count = std::count(rows.begin() + window.first, rows.begin() + window.last, true);
+      chosen.push_back(2.0 * static_cast<double>(count) > sizeOf(window));
+    }
+    for (int round = 0; round < kTightenings && said(chosen) > 0; ++round) chosen = tightened(chosen);
+    return rowsOf(chosen);
   }
 
  private:
-  bool says(const Window& window) const {
-    return std::any_of(window.sums.begin(), window.sums.end(),
-                       [&](const JointSums& sums) { return 2.0 * sums.count >= sizeOf(window); });
-  }
   static double sizeOf(const Window& window) { return static_cast<double>(window.last - window.first); }
+  static bool says(const Window& window, const JointSums& joint) { return 2.0 * joint.count >= sizeOf(window); }
+  static bool says(const Window& window) {
+    return std::any_of(window.sums.begin(), window.sums.end(),
+                       [&](const JointSums& joint) { return says(window, joint); });
+  }
 
+  /// What the chosen windows say, joint by joint: one in which most joints stand still is easily explained.
   std::size_t said(const std::vector<bool>& chosen) const {
     std::size_t count = 0;
-    for (std::size_t w = 0; w < windows_.size(); ++w) count += chosen[w] && says(windows_[w]) ? 1 : 0;
+    for (std::size_t w = 0; w < windows_.size(); ++w) {
+      if (!chosen[w]) continue;
+      for (const JointSums& joint : windows_[w].sums) count += says(windows_[w], joint) ? 1 : 0;
+    }
     return count;
   }
 
@@ -96,7 +111,9 @@ class Search {
     double count = 0.0;
     for (std::size_t w = 0; w < windows_.size(); ++w) {
       if (!chosen[w]) continue;
-      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += windows_[w].sums[i];
+      for (std::size_t i = 0; i < sums.size(); ++i) {
+        if (says(windows_[w], windows_[w].sums[i])) sums[i] += windows_[w].sums[i];
+      }
       rows += sizeOf(windows_[w]);
       count += 1.0;
     }
@@ -106,7 +123,7 @@ class Search {
 
   double usualResidual(const Window& window, Index joint, const Eigen::VectorXd& theta) const {
     const JointSums& sums = window.sums[static_cast<std::size_t>(joint)];
-    if (2.0 * sums.count < sizeOf(window)) return std::numeric_limits<double>::quiet_NaN();
+    if (!says(window, sums)) return std::numeric_limits<double>::quiet_NaN();
     return std::sqrt(sums.squares(regression_, joint, theta) / sums.count);
   }
 
@@ -159,7 +176,9 @@ class Search {
       const double usual = kUsual * std::max(*middle, tolerance_.noise[i]);
       tolerance_.largest[i] = std::min(tolerance_.largest[i], std::max(usual, least_[i]));
     }
-    return explained(theta);
+    std::vector<bool> kept = explained(theta);
+    std::transform(kept.begin(), kept.end(), chosen.begin(), kept.begin(), std::logical_and<>());
+    return kept;
   }
 
   std::vector<bool> rowsOf(const std::vector<bool>& chosen) const {
@@ -182,7 +201,12 @@ class Search {
 
 std::vector<bool> findHandFreeRows(const TorqueEquations& equations, const TorqueRegression& regression,
                                    const HandFreeTolerance& tolerance, const Prior& prior) {
-  return Search(regression, windowsOf(equations, regression), tolerance, prior).run();
+  return Search(regression, windowsOf(equations, regression), tolerance, prior).largest();
+}
+
+std::vector<bool> keepUsualRows(const TorqueEquations& equations, const TorqueRegression& regression,
+                                const HandFreeTolerance& tolerance, const Prior& prior, const std::vector<bool>& rows) {
+  return Search(regression, windowsOf(equations, regression), tolerance, prior).usual(rows);
 }
 
 }  // namespace demo_logger

@@ -19,4 +19,9 @@ struct HandFreeTolerance {
 std::vector<bool> findHandFreeRows(const TorqueEquations& equations, const TorqueRegression& regression,
                                    const HandFreeTolerance& tolerance, const Prior& prior);
 
+/// Of such rows, once more is known of the equations (the payload's inertia, at which velocity friction rises), those
+/// that do not stick out of what is usual among them.
+std::vector<bool> keepUsualRows(const TorqueEquations& equations, const TorqueRegression& regression,
+                                const HandFreeTolerance& tolerance, const Prior& prior, const std::vector<bool>& rows);
+
 }  // namespace demo_logger

@@ -7,7 +7,6 @@
 
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
-#include "src/tool/number_option.h"
 #include "src/tool/verbs.h"
 
 namespace demo_logger {
@@ -69,14 +68,15 @@ void addTorqueFitOptions(CLI::App& verb, TorqueFitOptions& options) {
   verb.add_flag("--fit-friction,!--no-fit-friction", options.friction,
                 "fit friction (default: if the efforts are those of the motors)")
       ->needs("--fit");
-  CLI::Option* model_error =
-      verb.add_option("--model-error", options.model_error,
-                      "how far the fitted model may be off where no hand is, in parts of what a joint usually bears");
-  model_error->capture_default_str()->needs("--fit");
-  NumberRange parts;
-  parts.lower = 1e-4;
-  parts.upper = 1.0;
-  requireNumber(*model_error, parts);
+  verb.add_flag("--fit-bodies", options.bodies,
+                "fit mass, centre and inertia of every body, not those of a payload alone; takes a long motion of all "
+                "joints, far and fast")
+      ->needs("--fit");
+  verb.add_option("--model-error", options.model_error,
+                  "how far the fitted model may be off where no hand is, in parts of what a joint usually bears")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-4, 1.0))
+      ->needs("--fit");
 }
 
 std::string stepOf(const TorqueFitOptions& options) {
@@ -87,6 +87,7 @@ std::string stepOf(const TorqueFitOptions& options) {
   step += " --fit " + nameOf(options.fit);
   for (const std::string& span : options.hand_free) step += " --hand-free " + span;
   if (options.friction) step += *options.friction ? " --fit-friction" : " --no-fit-friction";
+  if (options.bodies) step += " --fit-bodies";
   return step + " --model-error " + print(options.model_error);
 }
 
@@ -110,6 +111,7 @@ std::optional<int> TorqueModel::prepare(const RobotDescription& arm, const std::
   }
   fit.hand_free = hand_free_;
   fit.friction = options_.friction;
+  fit.bodies = options_.bodies;
   fit.model_error = options_.model_error;
   std::vector<const Demonstration*> demonstrations;
   for (const LoadedDemonstration& recording : recordings) demonstrations.push_back(&recording.demonstration);

@@ -18,6 +18,7 @@ struct TorqueFitOptions {
   std::string fit;                     // --fit
   std::vector<std::string> hand_free;  // --hand-free FROM:TO
   std::optional<bool> friction;
+  bool bodies = false;
   double model_error = FitOptions().model_error;
 };
 

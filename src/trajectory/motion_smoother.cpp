@@ -23,7 +23,7 @@ constexpr double kFineStep = 1.1;            // to which T is then determined
 // How calm the motion is, piece by piece. The T of the whole is that of its lively parts; a shorter one is not looked
 // for, as the steps of an encoder in a slow part would be taken for life.
 constexpr double kLivelyStep = 1.5;        // between the T looked at
-constexpr int kCalmest = 6;                // the last of them, relative to T
+constexpr int kCalmest = 4;                // the last of them, relative to T
 constexpr double kPieceTimes = 40.0;       // T, at least, that a piece lasts
 constexpr std::size_t kPieceSamples = 64;  // ditto
 constexpr double kChange = 1.0;            // of ln T from piece to piece: a usual one
@@ -187,7 +187,17 @@ class LivelinessSearch {
       path[static_cast<std::size_t>(piece)] = std::log(kLivelyStep) * there;
       step = from(step, piece);
     }
-    return path;
+    return beforeItBegins(path);
+  }
+
+  /// Life that begins or ends within a piece is in its neighbour already: each takes the shortest T around it.
+  static std::vector<double> beforeItBegins(const std::vector<double>& path) {
+    std::vector<double> safe = path;
+    for (std::size_t piece = 0; piece < path.size(); ++piece) {
+      if (piece > 0) safe[piece] = std::min(safe[piece], path[piece - 1]);
+      if (piece + 1 < path.size()) safe[piece] = std::min(safe[piece], path[piece + 1]);
+    }
+    return safe;
   }
 
   /// Of the parabola through a value and its neighbours, in steps from it.

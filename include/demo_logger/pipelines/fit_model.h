@@ -24,6 +24,7 @@ struct FitOptions {
   ModelCalibration start;
   std::vector<TimeSpan> hand_free;  // where no hand touched the arm; empty: to be found
   std::optional<bool> friction;     // to be fitted; nothing: if the efforts are those of the motors
+  bool bodies = false;              // every body is fitted, not the payload alone
   /// How far the fitted model may be off where no hand is, in parts of what a joint usually bears (root mean square).
   double model_error = 0.1;
   double least_duration = 2.0;  // [s] without a hand, in which the arm moves, or stands without friction
@@ -59,6 +60,11 @@ struct FitResult {
 /// torque does not look like a payload, a bias or friction for longer than the hand is away: it goes wrong where
 /// someone rests a steady weight on the tool for most of the recording. A joint that stands still with friction says
 /// nothing of the torque on it, and does not count.
+///
+/// With `bodies`, where no hand is and after all that, the ten mass properties of every body take the payload's place,
+/// each held to the description's by 30 % of its mass, 3 cm of its centre and as much of its radius of gyration (the
+/// last one by a payload besides). Most of them are only known together; what is found is what torques need, the ridge
+/// decides the rest. Bodies that cannot be are replaced by the nearest that can, near as the data have it.
 ///
 /// Throws as addHumanTorque does.
 FitResult fitModel(const RobotDescription& robot, const std::vector<const Demonstration*>& recordings,

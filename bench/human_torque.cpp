@@ -1,0 +1,360 @@
+// Measures how well the torque of a hand that guides the simulated arm is recovered, against the truth, from fixed
+// seeds. Prints Markdown. Percent: root of the mean square error over all joints and rows, over the largest torque of
+// any joint; 0.25 s are cut at both ends. Times are CPU time of the process.
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <map>
+#include <random>
+
+#include "demo_logger/pipelines/fit_model.h"
+#include "demo_logger/pipelines/human_torque.h"
+#include "demo_logger/pipelines/human_torque_observer.h"
+#include "test/pipelines/taught_arm.h"
+
+namespace {
+
+using namespace demo_logger;
+
+constexpr double kFrictionVelocity = 0.01;  // [rad/s] of the reference integrator
+constexpr std::uint64_t kSeeds = 9;         // three of each task
+
+CalibratedArm asItIs(const RobotDescription& arm) { return calibrate(arm, ModelCalibration()); }
+
+Teaching taught(std::uint64_t seed) {
+  Teaching teaching;
+  teaching.task = handTaskNames()[seed % handTaskNames().size()];
+  teaching.seed = seed;
+  return teaching;
+}
+
+Demonstration recovered(const TaughtRecording& recording, const CalibratedArm& arm) {
+  Demonstration result = recording.log;
+  addHumanTorque(arm, result);
+  return result;
+}
+
+double offBy(const TaughtRecording& recording, const CalibratedArm& arm) {
+  return percentOff(recording, jointColumns(recovered(recording, arm), "tau_h_"));
+}
+
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// One line of the table from a value for each seed.
+void row(const std::string& what, const std::string& reach, const std::vector<double>& values, int decimals) {
+  std::printf("| %s | %s | %.*f | %.*f |\n", what.c_str(), reach.c_str(), decimals, medianOf(values), decimals,
+              *std::max_element(values.begin(), values.end()));
+  std::fflush(stdout);
+}
+
+using Measure = std::function<double(std::uint64_t seed)>;
+std::vector<double> forEachSeed(const Measure& measure) {
+  std::vector<double> values;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) values.push_back(measure(seed));
+  return values;
+}
+
+// ---- a model that is right
+
+void measureExactModel() {
+  const CalibratedArm arm = asItIs(taughtArm());
+  row("noise-free, 1 kHz, reference integrator", "0.001 %", forEachSeed([&](std::uint64_t seed) {
+        Teaching teaching = taught(seed);
+        teaching.integrator = Integrator::runge_kutta_4;
+        return offBy(teach(teaching), arm);
+      }),
+      5);
+  row("noise-free, 1 kHz, default stepping (1/4 ms, semi-implicit Euler)", "0.02 %",
+      forEachSeed([&](std::uint64_t seed) { return offBy(teach(taught(seed)), arm); }), 4);
+  const auto withEncoder = [](std::uint64_t seed) {
+    Teaching teaching = taught(seed);
+    teaching.encoder_step = encoderStep(18);
+    return teach(teaching);
+  };
+  row("encoder 2^-18 rev, 1 kHz", "0.17 %",
+      forEachSeed([&](std::uint64_t seed) { return offBy(withEncoder(seed), arm); }), 3);
+  row("encoder 2^-18 rev, 100 Hz", "0.24 %",
+      forEachSeed([&](std::uint64_t seed) { return offBy(thinned(withEncoder(seed), 10), arm); }), 3);
+  row("the same, held commands taken at half the log's interval instead of half the control period", "nine times",
+      forEachSeed([&](std::uint64_t seed) {
+        TaughtRecording recording = thinned(withEncoder(seed), 10);
+        recording.log.metadata.effort.control_period = 0.01;
+        return offBy(recording, arm);
+      }),
+      3);
+  row("noise-free, 100 Hz", "",
+      forEachSeed([&](std::uint64_t seed) { return offBy(thinned(teach(taught(seed)), 10), arm); }), 4);
+  row("the same at half the log's interval", "nine times", forEachSeed([&](std::uint64_t seed) {
+        TaughtRecording recording = thinned(teach(taught(seed)), 10);
+        recording.log.metadata.effort.control_period = 0.01;
+        return offBy(recording, arm);
+      }),
+      4);
+  row("Gaussian noise of 1e-4 rad, 1 kHz", "0.55 %", forEachSeed([&](std::uint64_t seed) {
+        Teaching teaching = taught(seed);
+        teaching.position_noise = 1e-4;
+        return offBy(teach(teaching), arm);
+      }),
+      3);
+}
+
+/// The log of a driver that wakes up unevenly: positions at those instants, rounded by the encoder, and the command
+/// that is in force then.
+TaughtRecording jittered(const TaughtRecording& recording, double jitter, double encoder_step, std::uint64_t seed) {
+  TaughtRecording uneven = recording;
+  std::mt19937 random(static_cast<std::uint32_t>(seed));
+  std::normal_distribution<double> normal(0.0, jitter);
+  const Eigen::Index rows = recording.q.rows();
+  double last = -1.0;
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const double t = std::clamp(1e-3 * static_cast<double>(k) + normal(random), last + 1e-5, 1e-3 * (rows - 1.001));
+    last = t;
+    const auto before = static_cast<Eigen::Index>(std::floor(std::max(0.0, t) * 1e3));
+    const double s = std::max(0.0, t) * 1e3 - static_cast<double>(before);
+    uneven.log.time[static_cast<std::size_t>(k)] = t;
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      // Hermite's cubic through positions and velocities.
+      const double q0 = recording.q(before, i), q1 = recording.q(before + 1, i);
+      const double v0 = 1e-3 * recording.dq(before, i), v1 = 1e-3 * recording.dq(before + 1, i);
+      const double q = q0 + s * (v0 + s * (3.0 * (q1 - q0) - 2.0 * v0 - v1 + s * (v0 + v1 - 2.0 * (q1 - q0))));
+      uneven.log.values(k, i) = std::round(q / encoder_step) * encoder_step;
+      uneven.log.values(k, 7 + i) = recording.log.values(before, 7 + i);
+      uneven.torque(k, i) = (1.0 - s) * recording.torque(before, i) + s * recording.torque(before + 1, i);
+    }
+  }
+  return uneven;
+}
+
+void measureJitter() {
+  const CalibratedArm arm = asItIs(taughtArm());
+  std::vector<double> ratios, ignored;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const TaughtRecording even = teach(taught(seed));
+    const double step = encoderStep(18);
+    TaughtRecording uneven = jittered(even, 300e-6, step, seed);
+    const double without = offBy(jittered(even, 1e-12, step, seed), arm);
+    ratios.push_back(offBy(uneven, arm) / without);
+    uneven.log.time = even.log.time;
+    ignored.push_back(offBy(uneven, arm));
+  }
+  row("stamps that jitter by 300 µs but are true, 2^-18, 1 kHz: times the error without jitter", "1.1", ratios, 2);
+  row("the same with even stamps instead of the true ones [%]", "(3)", ignored, 2);
+}
+
+// ---- a model that has to be found first
+
+/// The error with what was fitted; what the fit could not say stays as it was.
+double offAfterFit(const TaughtRecording& recording, const RobotDescription& claimed) {
+  const FitResult fit = fitModel(claimed, {&recording.log});
+  if (!fit.undetermined.empty()) std::printf("<!-- not fitted: %s -->\n", fit.undetermined.c_str());
+  return offBy(recording, calibrate(claimed, fit.calibration));
+}
+
+void measurePayload() {
+  std::map<std::string, std::vector<double>> off;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Teaching teaching = taught(seed);
+    teaching.encoder_step = encoderStep(18);
+    teaching.own_motion = 12.0;
+    teaching.payload = BodyInertia{0.3, {0.01, 0.02, 0.05}, Eigen::Vector3d(4e-4, 4e-4, 2e-4).asDiagonal()};
+    const TaughtRecording recording = teach(teaching);
+    off["0"].push_back(offBy(recording, asItIs(taughtArm())));
+    off["1"].push_back(offAfterFit(recording, taughtArm()));
+    off["2"].push_back(offBy(recording, asItIs(withLoad(taughtArm(), *teaching.payload))));
+  }
+  row("unknown payload of 0.3 kg, 2^-18, 1 kHz", "(3.7 %)", off["0"], 2);
+  row("the same after the fit, hand-free parts found by itself", "0.5 %", off["1"], 3);
+  row("the same, had the payload been known", "", off["2"], 3);
+}
+
+/// As percentOff, of the joints only that move in a row, or that stand still.
+double percentOffWhere(const TaughtRecording& recording, const Eigen::MatrixXd& torque, bool moving) {
+  constexpr double kMoves = 0.01;  // [rad/s]
+  double squares = 0.0;
+  double count = 0.0;
+  for (Eigen::Index k = 0; k < torque.rows(); ++k) {
+    const double t = recording.log.time[static_cast<std::size_t>(k)];
+    if (t < recording.taught_from + 0.25 || t > recording.taught_to - 0.25) continue;
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      if ((std::abs(recording.dq(k, i)) > kMoves) != moving) continue;
+      squares += std::pow(torque(k, i) - recording.torque(k, i), 2);
+      count += 1.0;
+    }
+  }
+  return 100.0 * std::sqrt(squares / count) / recording.torque.cwiseAbs().maxCoeff();
+}
+
+void measureFriction() {
+  RobotDescription bare = taughtArm();
+  for (ArmJoint& joint : bare.joints) joint.damping = 0.0;
+  for (const Integrator integrator : {Integrator::runge_kutta_4, Integrator::semi_implicit_euler}) {
+    const bool is_smooth = integrator == Integrator::runge_kutta_4;
+    RobotDescription known = taughtArm(/*coulomb_friction=*/true);
+    if (is_smooth) {
+      for (ArmJoint& joint : known.joints) joint.friction_velocity = kFrictionVelocity;
+    }
+    std::map<std::string, std::vector<double>> off;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      Teaching teaching = taught(seed);
+      teaching.encoder_step = encoderStep(18);
+      teaching.own_motion = 12.0;
+      teaching.coulomb_friction = true;
+      teaching.integrator = integrator;
+      const TaughtRecording recording = teach(teaching);
+      const FitResult fit = fitModel(bare, {&recording.log});
+      if (!fit.undetermined.empty()) std::printf("<!-- not fitted: %s -->\n", fit.undetermined.c_str());
+      const CalibratedArm fitted = calibrate(bare, fit.calibration);
+      const Eigen::MatrixXd torque = jointColumns(recovered(recording, fitted), "tau_h_");
+      off["0"].push_back(offBy(recording, asItIs(bare)));
+      off["1"].push_back(percentOff(recording, torque));
+      off["2"].push_back(offBy(recording, asItIs(known)));
+      off["3"].push_back(percentOffWhere(recording, torque, /*moving=*/true));
+      off["4"].push_back(percentOffWhere(recording, torque, /*moving=*/false));
+    }
+    row(is_smooth ? "unknown friction F tanh(q̇ / 0.01 rad/s) and viscous, 2^-18, 1 kHz"
+                  : "unknown friction that holds (stiction) and viscous, 2^-18, 1 kHz",
+        "(5 %)", off["0"], 2);
+    row("the same after the fit", is_smooth ? "0.7 %" : "", off["1"], 3);
+    row("the same, had it been known", "", off["2"], 3);
+    if (is_smooth) continue;
+    row("the same after the fit, joints that move", "0.7 %", off["3"], 3);
+    row("the same after the fit, joints that stand still", "", off["4"], 3);
+  }
+}
+
+// ---- as it happens
+
+struct Online {
+  double raw;
+  double shifted;  // the delay removed
+};
+
+Online observe(const TaughtRecording& recording) {
+  HumanTorqueObserverConfiguration configuration;
+  configuration.effort = recording.log.metadata.effort;
+  HumanTorqueObserver observer(asItIs(taughtArm()), configuration);
+  const Eigen::Index rows = recording.q.rows();
+  Eigen::MatrixXd raw(rows, 7);
+  Eigen::VectorXd torque(7);
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    observer.update(k * kMillisecond, recording.log.values.row(k).head(7), recording.log.values.row(k).tail(7), torque);
+    raw.row(k) = torque;
+  }
+  const auto late = static_cast<Eigen::Index>(std::lround(1e3 * observer.delay()));
+  Eigen::MatrixXd shifted = Eigen::MatrixXd::Constant(rows, 7, std::nan(""));
+  shifted.topRows(rows - late) = raw.bottomRows(rows - late);
+  return {percentOff(recording, raw), percentOff(recording, shifted)};
+}
+
+void measureOnline() {
+  std::vector<double> raw, shifted;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Teaching teaching = taught(seed);
+    teaching.encoder_step = encoderStep(18);
+    const Online online = observe(teach(teaching));
+    raw.push_back(online.raw);
+    shifted.push_back(online.shifted);
+  }
+  row("online observer, 2^-18, 1 kHz, defaults: as it comes", "3 %", raw, 2);
+  row("the same, its delay removed", "0.8 %", shifted, 2);
+}
+
+// ---- honesty, cost
+
+void measureHonesty() {
+  const CalibratedArm arm = asItIs(taughtArm());
+  std::printf(
+      "\n## Is it as sure as it says\n\nShare of samples whose error is within two of their own standard "
+      "deviations, and the root mean square of error over deviation; exact model, 1 kHz, all joints and rows.\n\n"
+      "| noise | within 2σ (median, least) | rms(error / σ) (median, largest) |\n|---|---|---|\n");
+  for (const double noise : {1e-5, 1e-4, 1e-3, 0.0}) {
+    std::vector<double> within, ratio;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      Teaching teaching = taught(seed);
+      teaching.position_noise = noise;
+      if (noise == 0.0) teaching.encoder_step = encoderStep(18);
+      const TaughtRecording recording = teach(teaching);
+      const Demonstration result = recovered(recording, arm);
+      const Eigen::MatrixXd error = jointColumns(result, "tau_h_") - recording.torque;
+      const Eigen::ArrayXXd relative = error.array() / jointColumns(result, "tau_h_std_").array();
+      within.push_back((relative.abs() <= 2.0).cast<double>().mean());
+      ratio.push_back(std::sqrt(relative.square().mean()));
+    }
+    std::printf("| %s | %.1f %%, %.1f %% | %.2f, %.2f |\n",
+                noise > 0.0 ? ("Gaussian " + std::to_string(noise).substr(0, 7) + " rad").c_str() : "encoder 2^-18 rev",
+                100.0 * medianOf(within), 100.0 * *std::min_element(within.begin(), within.end()), medianOf(ratio),
+                *std::max_element(ratio.begin(), ratio.end()));
+  }
+}
+
+/// A guided arm for as long as one likes: one teaching after the other.
+Demonstration repeated(const Demonstration& log, Eigen::Index rows, double jitter) {
+  Demonstration longer = log;
+  longer.time.clear();
+  longer.values.resize(rows, log.values.cols());
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0.0, jitter);
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    longer.time.push_back(1e-3 * static_cast<double>(k) + std::clamp(normal(random), -4e-4, 4e-4));
+    longer.values.row(k) = log.values.row(k % log.values.rows());
+  }
+  return longer;
+}
+
+void measureCost() {
+  std::printf(
+      "\n## Cost\n\nOf `addHumanTorque`, 7 joints at 1 kHz, one core; memory is what the process holds at most "
+      "beyond the log itself.\n\n| recording | efforts | stamps | CPU time | per row | memory "
+      "|\n|---|---|---|---|---|---|\n");
+  Teaching teaching = taught(1);
+  teaching.encoder_step = encoderStep(18);
+  const TaughtRecording recording = teach(teaching);
+  const CalibratedArm arm = asItIs(taughtArm());
+  for (const Eigen::Index seconds : {15, 30, 60, 120}) {
+    for (const char* const timing : {"held", "instant"}) {
+      for (const double jitter : {0.0, 5e-5}) {
+        Demonstration log = repeated(recording.log, 1000 * seconds, jitter);
+        log.metadata.effort.timing = timing;
+        rusage before{};
+        getrusage(RUSAGE_SELF, &before);
+        const std::clock_t start = std::clock();
+        addHumanTorque(arm, log);
+        const double spent = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+        rusage after{};
+        getrusage(RUSAGE_SELF, &after);
+        const long grown = (after.ru_maxrss - before.ru_maxrss) / 1024;
+        std::printf("| %ld s | %s | %s | %.2f s | %.1f µs | %s |\n", static_cast<long>(seconds), timing,
+                    jitter > 0.0 ? "uneven" : "even", spent, 1e3 * spent / static_cast<double>(seconds),
+                    grown > 0 ? ("+ " + std::to_string(grown) + " MiB").c_str() : "");
+        std::fflush(stdout);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+int main() {
+  std::printf(
+      "A simulated hand guides the demo arm (viscous friction of 0.12 to 1 N m s/rad, which the model has) under "
+      "gravity compensation at 1 kHz,\n%d times from fixed seeds through the tasks reach, arc and peg. "
+      "`reach`: what was to be reached; in brackets, what ignoring it costs.\n\n"
+      "| case | reach | median | worst |\n|---|---|---|---|\n",
+      static_cast<int>(kSeeds));
+  measureExactModel();
+  measureJitter();
+  measurePayload();
+  measureFriction();
+  measureOnline();
+  measureHonesty();
+  measureCost();
+  return 0;
+}
