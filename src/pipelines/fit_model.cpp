@@ -21,7 +21,9 @@ using Index = Eigen::Index;
 
 constexpr double kNoiseTimes = 5.0;  // a residual that sensors alone may leave
 constexpr int kRounds = 4;           // for weights, friction velocities and the payload's own inertia to settle
-constexpr std::array<double, 6> kFrictionVelocities = {0.0, 0.01, 0.02, 0.05, 0.1, 0.2};  // [rad/s or m/s]
+constexpr std::array<double, 5> kFrictionVelocities = {0.01, 0.02, 0.05, 0.1, 0.2};  // [rad/s or m/s]
+constexpr double kStepGain =
+    0.8;  // of what the best of them leaves, that a step must come below; near it few rows tell
 
 EffortMetadata commonMeaning(const std::vector<const Demonstration*>& recordings, const FitOptions& options) {
   if (recordings.empty()) throw ConfigurationError("there is no recording to fit a model to");
@@ -178,11 +180,11 @@ class Fit {
       double best = problem_.frictionVelocity(i);
       for (const double velocity : kFrictionVelocities) {
         const double left = leftWith(i, velocity);
-        if (left < least * (1.0 - 1e-3)) {  // a hair's breadth of a gain is none
-          least = left;
-          best = velocity;
-        }
+        if (left >= least) continue;
+        least = left;
+        best = velocity;
       }
+      if (leftWith(i, 0.0) < kStepGain * least) best = 0.0;
       problem_.assumeFrictionVelocity(i, best);
     }
   }
