@@ -106,33 +106,6 @@ void measureExactModel() {
       3);
 }
 
-/// The log of a driver that wakes up unevenly: positions at those instants, rounded by the encoder, and the command
-/// that is in force then.
-TaughtRecording jittered(const TaughtRecording& recording, double jitter, double encoder_step, std::uint64_t seed) {
-  TaughtRecording uneven = recording;
-  std::mt19937 random(static_cast<std::uint32_t>(seed));
-  std::normal_distribution<double> normal(0.0, jitter);
-  const Eigen::Index rows = recording.q.rows();
-  double last = -1.0;
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    const double t = std::clamp(1e-3 * static_cast<double>(k) + normal(random), last + 1e-5, 1e-3 * (rows - 1.001));
-    last = t;
-    const auto before = static_cast<Eigen::Index>(std::floor(std::max(0.0, t) * 1e3));
-    const double s = std::max(0.0, t) * 1e3 - static_cast<double>(before);
-    uneven.log.time[static_cast<std::size_t>(k)] = t;
-    for (Eigen::Index i = 0; i < 7; ++i) {
-      // Hermite's cubic through positions and velocities.
-      const double q0 = recording.q(before, i), q1 = recording.q(before + 1, i);
-      const double v0 = 1e-3 * recording.dq(before, i), v1 = 1e-3 * recording.dq(before + 1, i);
-      const double q = q0 + s * (v0 + s * (3.0 * (q1 - q0) - 2.0 * v0 - v1 + s * (v0 + v1 - 2.0 * (q1 - q0))));
-      uneven.log.values(k, i) = std::round(q / encoder_step) * encoder_step;
-      uneven.log.values(k, 7 + i) = recording.log.values(before, 7 + i);
-      uneven.torque(k, i) = (1.0 - s) * recording.torque(before, i) + s * recording.torque(before + 1, i);
-    }
-  }
-  return uneven;
-}
-
 void measureJitter() {
   const CalibratedArm arm = asItIs(taughtArm());
   std::vector<double> ratios, ignored;

@@ -10,8 +10,8 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr Index kValues = 10;         // of a body
-constexpr double kLeastShare = 1e-4;  // of a body's mean square extent, and of its mass, in every direction
+constexpr Index kValues = 10;    // of a body
+constexpr double kLeast = 1e-9;  // [kg m², kg] of every body in every direction, so that rounding takes none away
 
 Eigen::Matrix4d pseudoInertia(const LinearInertia& body) {
   Eigen::Matrix3d I;
@@ -32,8 +32,8 @@ LinearInertia fromPseudoInertia(const Eigen::Matrix4d& J) {
   return body;
 }
 
-/// The body whose pseudo-inertia is L Lᵀ, L lower triangular with eˣ on its diagonal: any ten numbers make a possible
-/// body (Rucker and Wensing 2022).
+/// The body whose pseudo-inertia is L Lᵀ and a hair more, L lower triangular with eˣ on its diagonal: any ten numbers
+/// make a possible body (Rucker and Wensing 2022).
 LinearInertia bodyOf(const Eigen::Ref<const Eigen::VectorXd>& x) {
   Eigen::Matrix4d L = Eigen::Matrix4d::Zero();
   Index at = 0;
@@ -41,15 +41,14 @@ LinearInertia bodyOf(const Eigen::Ref<const Eigen::VectorXd>& x) {
     for (Index j = 0; j < i; ++j) L(i, j) = x[at++];
     L(i, i) = std::exp(x[at++]);
   }
-  return fromPseudoInertia(L * L.transpose());
+  return fromPseudoInertia(L * L.transpose() + kLeast * Eigen::Matrix4d::Identity());
 }
 
 /// The other way; what is not possible, or hardly, is made so.
 Eigen::VectorXd coordinatesOf(const LinearInertia& body) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(pseudoInertia(body));
-  const double least = kLeastShare * std::max(1e-6, eigen.eigenvalues().maxCoeff() * kLeastShare);
-  const Eigen::Matrix4d J =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(least).asDiagonal() * eigen.eigenvectors().transpose();
+  const Eigen::Vector4d values = eigen.eigenvalues().array().max(2.0 * kLeast) - kLeast;
+  const Eigen::Matrix4d J = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
   const Eigen::Matrix4d L = J.llt().matrixL();
   Eigen::VectorXd x(kValues);
   Index at = 0;

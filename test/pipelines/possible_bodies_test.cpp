@@ -1,0 +1,58 @@
+#include "src/pipelines/possible_bodies.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <random>
+
+namespace demo_logger {
+namespace {
+
+/// A ball of 2 kg and 0.1 m, off the origin: I = 2/5 m r² about its centre.
+LinearInertia ball() {
+  return linearInertia({2.0, {0.05, -0.02, 0.1}, 0.4 * 2.0 * 0.01 * Eigen::Matrix3d::Identity()});
+}
+
+TEST(PossibleBodiesTest, ABallCanBeAndABodyAgainstTheTriangleInequalityCannot) {
+  EXPECT_TRUE(isPossible(ball()));
+  LinearInertia flat = ball();
+  flat[4] *= 3.0;  // I_xx beyond I_yy + I_zz
+  EXPECT_FALSE(isPossible(flat));
+  LinearInertia weightless = ball();
+  weightless[0] = -0.1;
+  EXPECT_FALSE(isPossible(weightless));
+}
+
+TEST(PossibleBodiesTest, WhatCanBeStaysAsItIs) {
+  const Eigen::VectorXd found =
+      nearestPossibleBodies(ball(), 1e-4 * Eigen::MatrixXd::Identity(10, 10), /*before=*/ball());
+  EXPECT_LT((found - ball()).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST(PossibleBodiesTest, TheNearestBodyIsNearerThanAnyOtherThatIsTried) {
+  Eigen::VectorXd estimate = ball();
+  estimate[4] *= 3.0;
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd roots(10, 10);
+  for (double& entry : roots.reshaped()) entry = normal(random);
+  const Eigen::MatrixXd C = 1e-4 * (roots * roots.transpose() + Eigen::MatrixXd::Identity(10, 10));
+  const Eigen::VectorXd found = nearestPossibleBodies(estimate, C, ball());
+  EXPECT_TRUE(isPossible(found));
+  const auto distance = [&](const Eigen::VectorXd& body) {
+    return (body - estimate).dot(C.ldlt().solve(body - estimate));
+  };
+  int tried = 0;
+  for (int i = 0; i < 200000; ++i) {
+    Eigen::VectorXd other = found;
+    const double size = 0.003 * std::pow(10.0, -3.0 * (i % 100) / 100.0);
+    for (double& entry : other) entry += size * normal(random);
+    if (!isPossible(other)) continue;
+    ++tried;
+    EXPECT_GT(distance(other), distance(found) * (1.0 - 1e-3)) << i;
+  }
+  EXPECT_GT(tried, 1000);
+}
+
+}  // namespace
+}  // namespace demo_logger
