@@ -3,16 +3,17 @@
 set -euo pipefail
 if [ "${1:-}" = --help ]; then
   echo "usage: bench/run.sh [MEASUREMENT [options of recording_cost.py]]"
-  echo "Measurements: inverse_kinematics recording_cost robot_model simulated_arm synchronisation_error."
-  echo "Needs what scripts/test.sh installs. About 25 minutes for all; without a name it runs all."
-  echo "inverse_kinematics and robot_model also measure the arms in the folder that DEMO_LOGGER_URDF names."
+  echo "Measurements: human_torque inverse_kinematics recording_cost robot_model simulated_arm synchronisation_error."
+  echo "Needs what scripts/test.sh installs. About 30 minutes for all; without a name it runs all."
+  echo "inverse_kinematics and robot_model also measure the arms in the folder that DEMO_LOGGER_URDF names,"
+  echo "human_torque a real arm's run in the folder that DEMO_LOGGER_DATA names."
   exit 0
 fi
 project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 which=${1:-all}
 [ $# -eq 0 ] || shift
 case $which in
-  all | inverse_kinematics | recording_cost | robot_model | simulated_arm | synchronisation_error) ;;
+  all | human_torque | inverse_kinematics | recording_cost | robot_model | simulated_arm | synchronisation_error) ;;
   *) echo "run.sh: unknown measurement \"$which\"; --help shows what there is" >&2; exit 2 ;;
 esac
 cmake -S "$project" -B "$project/build" -DDEMO_LOGGER_BENCH=ON >/dev/null
@@ -75,6 +76,9 @@ if wanted robot_model; then
 fi
 if wanted inverse_kinematics; then
   measure "Inverse kinematics" "$project/doc/benchmarks/inverse_kinematics.md" "$programs/inverse_kinematics"
+fi
+if wanted human_torque; then
+  measure "The torque of the hand, against the truth" "$project/doc/benchmarks/human_torque.md" "$programs/human_torque"
 fi
 if wanted simulated_arm; then
   measure "What a simulated millisecond costs" "$project/doc/benchmarks/simulated_arm.md" simulatedArm

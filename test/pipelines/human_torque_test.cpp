@@ -267,6 +267,31 @@ TEST(HumanTorqueTest, NothingIsSaidAcrossASilence) {
   EXPECT_NEAR(value(demonstration, 500, "tau_h_joint_1"), handTorqueAt(0.5)[0], 0.01) << "a single row is bridged";
 }
 
+TEST(HumanTorqueTest, WhereAnEffortIsMissingThatJointsTorqueIsNotKnownAndNoOther) {
+  Demonstration demonstration = record({});
+  demonstration.values.col(7 + 2).segment(1000, 20).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
+  EXPECT_EQ(summary.rows, 3980U);
+  EXPECT_TRUE(std::isnan(value(demonstration, 1010, "tau_h_joint_3")));
+  EXPECT_NEAR(value(demonstration, 1010, "tau_h_joint_2"), handTorqueAt(1.01)[1], 1e-3);
+  EXPECT_TRUE(std::isnan(value(demonstration, 1010, "tool_fx"))) << "the force at the tool needs all joints";
+  EXPECT_NEAR(value(demonstration, 1021, "tau_h_joint_3"), handTorqueAt(1.021)[2], 1e-3);
+}
+
+TEST(HumanTorqueTest, RecordedVelocitiesAreNotAskedFor) {
+  Demonstration without = record({});
+  Demonstration with = without;
+  for (Index i = 0; i < 7; ++i) {
+    with.columns.push_back({"dq_" + joint(i), "", Role::state, Interpolation::linear, ""});
+  }
+  with.values.conservativeResize(Eigen::NoChange, 21);
+  with.values.rightCols(7).setConstant(99.0);
+  addHumanTorque(frictionless(), without);
+  addHumanTorque(frictionless(), with);
+  EXPECT_EQ(value(with, 2000, "tau_h_joint_2"), value(without, 2000, "tau_h_joint_2"));
+  EXPECT_NEAR(value(with, 2000, "dq_joint_3"), motionAt(2.0).dq[2], 1e-6) << "replaced by the smoothed one";
+}
+
 TEST(HumanTorqueTest, ARecordingOfOneRowHasNoTorqueAndSaysWhy) {
   Demonstration demonstration = record({});
   demonstration.time.resize(1);

@@ -14,7 +14,7 @@ struct SmoothedMotion {
   /// Covariance of (position, velocity, acceleration), one per instant.
   std::vector<Eigen::Matrix3d> covariance;
   double measurement_deviation = 0.0;  // standard deviation of one measured position [rad or m]
-  double snap_density = 0.0;           // S below [rad²/s⁷ or m²/s⁷]
+  double snap_density = 0.0;           // S below [rad²/s⁷ or m²/s⁷], where the motion is liveliest
   double time_constant = 0.0;          // T = (r Δt / S)^(1/8) [s]: what is much faster counts as noise
   double log_likelihood = 0.0;         // of the measurements, at the values above
 };
@@ -24,14 +24,15 @@ struct SmoothedMotion {
 ///   d⁴q/dt⁴ = w,  E[w(t) w(t')] = S δ(t − t'),   z_k = q(t_k) + v_k,  Var v_k = r,
 /// whose posterior a Kalman filter and smoother give exactly, in time linear in the samples. Nothing is known of the
 /// motion beforehand. S and r follow from the data by maximum likelihood (T from some 16 000 samples spread over a
-/// longer record): nothing is to be tuned.
+/// longer record): nothing is to be tuned. Where the motion is calmer for a while than elsewhere, S is smaller, by the
+/// likelihood of each piece of some 40 T: a gentle part is not smoothed as if it were the jerky one before it.
 ///
 /// The samples must number at least kFewestSamples finite ones. Positions that are NaN count as not measured: the
 /// estimate bridges them, and its covariance says how well. Throws Error where the times do not increase, are not
 /// finite, differ in number from the positions, or where there are too few of these.
 SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position);
 
-/// The same with a given T [s].
+/// The same with a given T [s], all through.
 SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position, double time_constant);
 
 constexpr int kFewestSamples = 8;
