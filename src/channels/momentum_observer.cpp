@@ -1,9 +1,9 @@
 #include "demo_logger/channels/momentum_observer.h"
 
 #include <cmath>
-#include <limits>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
@@ -22,7 +22,7 @@ void MomentumObserver::restart() { started_ = false; }
 
 bool MomentumObserver::update(double dt, const Eigen::VectorXd& momentum, const Eigen::VectorXd& u,
                               const Eigen::VectorXd& motor_torque, Eigen::VectorXd& torque) {
-  torque.setConstant(momentum.size(), std::numeric_limits<double>::quiet_NaN());
+  torque.setConstant(momentum.size(), kNaN);
   const bool usable = momentum.allFinite() && u.allFinite();
   if (started_ && !(usable && motor_torque.allFinite() && dt > 0.0 && std::isfinite(dt))) started_ = false;
   if (!usable) return false;

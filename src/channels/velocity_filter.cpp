@@ -19,9 +19,12 @@ bool VelocityFilter::update(double dt, const Eigen::VectorXd& position) {
     restart();
     return false;
   }
-  const bool follows = has_position_ && dt > 0.0 && dt <= longestInterval();
+  bool follows = has_position_ && dt > 0.0 && dt <= longestInterval();
   if (follows) {
     quotient_ = (position - last_) / dt;
+    follows = (quotient_.array().abs() <= kFastest).all();
+  }
+  if (follows) {
     if (has_velocity_) {
       filter_.advance(dt, quotient_);
     } else {

@@ -1,8 +1,8 @@
 #include "src/nodes/human_torque_publisher.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "demo_logger/trajectory/not_a_number.h"
 #include "src/ros/message_conversion.h"
 
 namespace demo_logger {
@@ -25,13 +25,26 @@ HumanTorquePublisher::HumanTorquePublisher(ros::NodeHandle private_node, const C
 
 void HumanTorquePublisher::onJointState(const JointStateSample& sample) {
   const Nanoseconds stamp = sample.arrival.stamp != 0 ? sample.arrival.stamp : sample.arrival.receipt;
-  const bool late = last_ && stamp <= *last_ && stamp + kNanosecondsPerSecond > *last_;
-  if (late || !take(sample)) return;
-  last_ = stamp;
+  if (!take(sample) || !isNext(stamp)) return;
   observer_.update(stamp, q_, effort_, torque_);
   message_.header.stamp = toRosTime(stamp);
   std::copy(torque_.begin(), torque_.end(), message_.effort.begin());
   publisher_.publish(message_);
+}
+
+/// Whether the joint state follows the last one. One before it came late; two such that agree say that the clock was
+/// set back.
+bool HumanTorquePublisher::isNext(Nanoseconds stamp) {
+  const bool late = last_ && stamp <= *last_;
+  const bool set_back = late && late_ && stamp > *late_;
+  late_ = late && stamp < *last_ ? std::optional<Nanoseconds>(stamp) : std::nullopt;
+  if (late && !set_back) return false;
+  if (set_back) {
+    observer_.restart();
+    late_.reset();
+  }
+  last_ = stamp;
+  return true;
 }
 
 /// Whether the message carries the arm.
@@ -46,7 +59,7 @@ bool HumanTorquePublisher::take(const JointStateSample& sample) {
     if (place >= sample.position.size()) return false;
     const auto joint = static_cast<Eigen::Index>(i);
     q_[joint] = sample.position[place];
-    effort_[joint] = place < sample.effort.size() ? sample.effort[place] : std::numeric_limits<double>::quiet_NaN();
+    effort_[joint] = place < sample.effort.size() ? sample.effort[place] : kNaN;
   }
   return true;
 }

@@ -19,15 +19,18 @@ class HumanTorquePublisher {
   HumanTorquePublisher(ros::NodeHandle private_node, const CalibratedArm& arm,
                        const HumanTorqueObserverConfiguration& configuration);
 
-  /// A joint state as it came. One that is not newer than the last is left out, unless the clock was set back.
+  /// A joint state as it came. One that is not newer than the last is left out, unless the clock was set back: then it
+  /// begins anew with the second on the new clock.
   void onJointState(const JointStateSample& sample);
 
  private:
   bool take(const JointStateSample& sample);
+  bool isNext(Nanoseconds stamp);
 
   HumanTorqueObserver observer_;
   ros::Publisher publisher_;
   std::optional<Nanoseconds> last_;
+  std::optional<Nanoseconds> late_;  // the message before this one, if it came late
   Eigen::VectorXd q_, effort_, torque_;
   sensor_msgs::JointState message_;
 };

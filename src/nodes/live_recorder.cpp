@@ -117,8 +117,10 @@ void LiveRecorder::record() {
 /// With the mutex held. Before ROS time has begun (simulated time without a clock yet), everything waits in the queue.
 void LiveRecorder::recordPending() {
   const Nanoseconds watermark = watermark_;  // before the queue is emptied: it is a promise about the queue
-  if (watermark == 0) {
-    problem_ = "use_sim_time is set but /clock has not been heard yet: nothing can be placed in time";
+  if (watermark == 0) {                      // or the receiving thread has yet to begin
+    if (simulated_time_) {
+      problem_ = "use_sim_time is set but /clock has not been heard yet: nothing can be placed in time";
+    }
     return;
   }
   try {

@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
 
-constexpr double kAhead = 1e-4;  // [rad or m] along q̇, where M is looked at to tell Ṁ
+constexpr double kMostTorque = 1e6;  // [N m or N] beyond what any motor gives; an effort that says so is none
+constexpr double kAhead = 1e-4;      // [rad or m] along q̇, where M is looked at to tell Ṁ
 
 /// Coulomb friction that does not change its sign with the noise of a filtered velocity.
 RobotDescription withGentleFriction(RobotDescription robot) {
@@ -57,7 +58,7 @@ void HumanTorqueObserver::restart() {
 
 bool HumanTorqueObserver::update(Nanoseconds stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& effort,
                                  Eigen::VectorXd& torque) {
-  torque.setConstant(model_.size(), std::numeric_limits<double>::quiet_NaN());
+  torque.setConstant(model_.size(), kNaN);
   const double dt = toSeconds(stamp - last_stamp_);
   last_stamp_ = stamp;
   last_motor_torque_.swap(motor_torque_);
@@ -69,7 +70,11 @@ bool HumanTorqueObserver::update(Nanoseconds stamp, const Eigen::VectorXd& q, co
     return false;
   }
   filterMotorTorque(dt);
-  return findMomentumAndForces() && observer_.update(dt, momentum_, forces_, mean_motor_torque_, torque);
+  if (!findMomentumAndForces()) {
+    restart();
+    return false;
+  }
+  return observer_.update(dt, momentum_, forces_, mean_motor_torque_, torque);
 }
 
 /// τ_c at this instant.
@@ -80,7 +85,7 @@ bool HumanTorqueObserver::takeMotorTorque(const Eigen::VectorXd& q, const Eigen:
     motor_torque_[i] =
         (unsaid ? 0.0 : effort[i] - bias_[i]) + (unsaid || !configuration_.effort.includes_gravity ? gravity_[i] : 0.0);
   }
-  return motor_torque_.allFinite();
+  return (motor_torque_.array().abs() <= kMostTorque).all();  // not if one is NaN
 }
 
 /// The mean of the filtered τ_c since the last sample, from the mean of τ_c itself.

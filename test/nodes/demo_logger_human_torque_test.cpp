@@ -41,6 +41,8 @@ class HumanTorqueTest : public RecorderUnderTest {
     }
   }
 
+  void setBack(double seconds) { stamp_ -= ros::Duration(seconds); }
+
   Demonstration finish() {
     EXPECT_TRUE(waitForRows(static_cast<std::uint64_t>(moved_)));
     const Stop::Response ended = call<Stop>("stop");
@@ -89,6 +91,18 @@ TEST_F(HumanTorqueTest, StandsInEachRowAndOnATopicTheSame) {
   EXPECT_NEAR(std::get<double>(parameters.at("human_torque/delay")), 0.0275, 1e-4);
 }
 
+TEST_F(HumanTorqueTest, AClockThatIsSetBackBeginsItAnewOnTheTopic) {
+  startWithRobot({"_tip:=tool_tip", "_human_torque:=true"});
+  hold(100);
+  ASSERT_TRUE(waitUntil([&] { return observed_.size() == 100; })) << observed_.size();
+  EXPECT_FALSE(std::isnan(observed_.back().effort[0]));
+  setBack(0.05);
+  hold(100);
+  ASSERT_TRUE(waitUntil([&] { return observed_.size() == 199; })) << observed_.size() << "; the first counts as late";
+  for (std::size_t i = 100; i < 150; ++i) EXPECT_TRUE(std::isnan(observed_[i].effort[0])) << i;
+  EXPECT_NEAR(observed_.back().effort[0], kHand, 0.02);
+}
+
 TEST_F(HumanTorqueTest, ASensorsWrenchStandsBesideItAsTheTorqueItMakes) {
   XmlRpc::XmlRpcValue streams;
   streams[0]["name"] = "ft";
@@ -114,7 +128,7 @@ TEST_F(HumanTorqueTest, ASensorsWrenchStandsBesideItAsTheTorqueItMakes) {
 
 TEST_F(HumanTorqueTest, StatesTooRareForItsFilterAreAFaultThatSaysWhatToDo) {
   startWithRobot({"_human_torque/cutoff:=200"});
-  hold(20);
+  hold(100);  // twice as long as it takes to settle
   const Demonstration demonstration = finish();
   for (const double torque : column(demonstration, "tau_h_joint_1")) EXPECT_TRUE(std::isnan(torque));
   bool said = false;

@@ -230,6 +230,7 @@ TEST(HumanTorqueObserverTest, AGapAMissingValueOrAClockThatGoesBackBeginItAnew) 
       [&] { return observer.update(stamp += 9'000'000, rest, holding, torque); },
       [&] { return observer.update(stamp -= 5'000'000'000, rest, holding, torque); },
       [&] { return observer.update(stamp, rest, holding, torque); },
+      [&] { return observer.update(stamp += 1'000'000, rest, both(1e308, 0.0), torque); },
   };
   for (const auto& fault : faults) {
     EXPECT_FALSE(fault());
@@ -237,6 +238,26 @@ TEST(HumanTorqueObserverTest, AGapAMissingValueOrAClockThatGoesBackBeginItAnew) 
     EXPECT_FALSE(run(99));
     EXPECT_TRUE(run(4)) << "5 / K_o, and two samples for a velocity";
     EXPECT_NEAR(torque[0], 0.0, 1e-9);
+  }
+}
+
+TEST(HumanTorqueObserverTest, APositionThatJumpsAndReturnsIsNoMotion) {
+  Case one;
+  one.configuration.effort = effort("motor", "held");
+  const RobotModel model(one.robot);
+  for (const double jump : {0.3, 1e6, 1e300}) {
+    HumanTorqueObserver observer(calibrated(one), one.configuration);
+    const Eigen::VectorXd rest = both(0.1, 0.2);
+    const Eigen::VectorXd holding = model.gravity(rest);
+    Eigen::VectorXd torque(2);
+    int known = 0;
+    for (int k = 0; k < 400; ++k) {
+      const Eigen::VectorXd q = k == 200 ? both(0.1 + jump, 0.2) : rest;
+      if (!observer.update(1'000'000 * k, q, holding, torque)) continue;
+      ++known;
+      EXPECT_NEAR(torque.cwiseAbs().maxCoeff(), 0.0, 1e-9) << k << " " << jump;
+    }
+    EXPECT_NEAR(known, 400 - 2 * 102, 3);
   }
 }
 

@@ -11,6 +11,7 @@ namespace demo_logger {
 class VelocityFilter {
  public:
   static constexpr double kFewestSamplesPerPeriod = 4.0;  // of the cut-off; with fewer the filter has nothing to filter
+  static constexpr double kFastest = 100.0;  // [rad/s or m/s] between two samples; beyond, the position jumped
 
   /// Throws ConfigurationError for a cut-off [Hz] that is not positive.
   VelocityFilter(Eigen::Index joints, double cutoff);
@@ -19,9 +20,9 @@ class VelocityFilter {
   void restart();
 
   /// `dt` [s] since the sample before. Returns false for the first sample (whose `dt` is ignored), for one more than
-  /// longestInterval() after the one before or not after it, which is the first of a new beginning, and for one that is
-  /// not finite. The second sample's velocity is the difference quotient, so that an arm may be moving when it begins.
-  /// Nothing is allocated.
+  /// longestInterval() after the one before or not after it, or of a position that jumped (kFastest), which is the
+  /// first of a new beginning, and for one that is not finite. The second sample's velocity is the difference quotient,
+  /// so that an arm may be moving when it begins. Nothing is allocated.
   bool update(double dt, const Eigen::VectorXd& position);
 
   /// Of the last update, if that returned true.
