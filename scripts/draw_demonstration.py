@@ -20,13 +20,25 @@ AXIS_COLOURS = {"x": "#c0392b", "y": "#1e8449", "z": "#1f5fa8"}
 TEXT = "#333333"
 
 
+def read_text(path):
+    """Throws ValueError in one sentence that names the file."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            return file.read()
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: no text, byte {error.start} is not UTF-8; is it a demonstration?") from None
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
+
+
 class Demonstration:
     """The columns of one CSV, and what its sidecar says about them where there is one."""
 
     def __init__(self, path):
-        with open(path, encoding="utf-8") as file:
-            self.names = file.readline().strip().split(",")
-            lines = file.read().splitlines()
+        self.path = path
+        header, _, rows = read_text(path).partition("\n")
+        self.names = header.strip().split(",")
+        lines = rows.splitlines()
         if len(lines) < 2:
             raise ValueError(f"{path}: {len(lines)} rows, expected at least 2 to draw")
         try:
@@ -40,8 +52,10 @@ class Demonstration:
         sidecar = os.path.splitext(path)[0] + ".json"
         self.metadata = {}
         if os.path.exists(sidecar):
-            with open(sidecar, encoding="utf-8") as file:
-                self.metadata = json.load(file)
+            try:
+                self.metadata = json.loads(read_text(sidecar))
+            except json.JSONDecodeError as error:
+                raise ValueError(f"{sidecar}: no JSON: {error}") from None
         self.units = {column["name"]: column.get("unit", "") for column in self.metadata.get("columns", [])}
 
     def group(self, names):
@@ -49,12 +63,16 @@ class Demonstration:
         return [name for name in names if name in self.values and np.isfinite(self.values[name]).any()]
 
     def joints(self, prefix):
+        """Those columns of all joints that hold at least one number."""
+        return self.group(self.joint_columns(prefix))
+
+    def joint_columns(self, prefix):
         """The columns of all joints, by the names that the recorder had to make portable where it had to."""
         column_of = {original: name for name, original in self.metadata.get("original_names", {}).items()}
         listed = [prefix + joint for joint in self.metadata.get("robot", {}).get("joints") or []]
         if listed:
-            return self.group([column_of.get(name, name) for name in listed])
-        return self.group([name for name in self.names if name.startswith(prefix)])
+            return [name for name in (column_of.get(name, name) for name in listed) if name in self.values]
+        return [name for name in self.names if name.startswith(prefix)]
 
     def title(self):
         parts = [self.metadata.get("id", ""), self.metadata.get("task", "")]
@@ -150,6 +168,13 @@ def draw_tool_path(figure, place, demonstration):
         axes.set_title(view, fontsize=9, color=TEXT)
 
 
+def save(figure, output, dpi):
+    try:
+        figure.savefig(output, dpi=dpi, facecolor="white")
+    except OSError as error:
+        raise ValueError(f"{output}: cannot be written: {error.strerror}") from None
+
+
 def draw(demonstration, output):
     panels = []
     positions = demonstration.joints("q_")
@@ -186,7 +211,7 @@ def draw(demonstration, output):
         draw_tool_path(figure, grid[:, 1], demonstration)
     rate = (len(demonstration.time) - 1) / (demonstration.time[-1] - demonstration.time[0])
     figure.suptitle(f"{demonstration.title()}   ({len(demonstration.time)} rows, {rate:.4g} Hz)", fontsize=11, color=TEXT)
-    figure.savefig(output, dpi=110, facecolor="white")
+    save(figure, output, dpi=110)
 
 
 def main():
@@ -198,7 +223,7 @@ def main():
     try:
         output = arguments.output or os.path.splitext(arguments.csv)[0] + ".png"
         draw(Demonstration(arguments.csv), output)
-    except (OSError, ValueError) as error:
+    except ValueError as error:
         print(f"draw_demonstration.py: {error}", file=sys.stderr)
         return 2
     print(output)

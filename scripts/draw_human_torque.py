@@ -6,7 +6,7 @@ import argparse
 import os
 import sys
 
-from draw_demonstration import TEXT, Demonstration, np, plt, style
+from draw_demonstration import TEXT, Demonstration, np, plt, save, style
 
 TRUE = "#b9b9b9"
 RECOVERED = "#c8371b"
@@ -62,10 +62,33 @@ def explain(axes, taught, live, joints, handles):
     axes.text(0.02, 0.3, text, transform=axes.transAxes, fontsize=9, color=TEXT, va="top", linespacing=1.5)
 
 
+def torque_columns(names):
+    return [name for name in names if not name.startswith("tau_h_std_")]
+
+
+def joints_of(demonstration):
+    """Those whose torque is known."""
+    there = torque_columns(demonstration.joint_columns("tau_h_"))
+    if not there:
+        raise ValueError(f"{demonstration.path}: no column tau_h_<joint> to draw; `demo_tool torque` adds them")
+    known = torque_columns(demonstration.joints("tau_h_"))
+    if not known:
+        raise ValueError(f"{demonstration.path}: the columns {', '.join(there)} hold no number; `demo_tool check` says "
+                         "which inputs are missing")
+    return [name[len("tau_h_"):] for name in known]
+
+
+def require_same_arm(taught, live):
+    joints, others = ([name[len("q_"):] for name in one.joint_columns("q_")] for one in (taught, live))
+    if set(joints) != set(others):
+        raise ValueError(f"{live.path}: joints {', '.join(others) or 'none'}, expected those of {taught.path}, "
+                         f"{', '.join(joints) or 'none'}, which --live is the recording of")
+
+
 def draw(taught, live, output):
-    joints = [name[len("tau_h_"):] for name in taught.joints("tau_h_") if not name.startswith("tau_h_std_")]
-    if not joints:
-        raise ValueError("no column tau_h_<joint> to draw; `demo_tool torque` adds them")
+    joints = joints_of(taught)
+    if live is not None:
+        require_same_arm(taught, live)
     rows = len(joints) // 2 + 1
     figure, grid = plt.subplots(rows, 2, figsize=(11.0, 0.7 + 1.75 * rows), sharex=True, layout="constrained")
     panels = grid.T.flatten()
@@ -78,7 +101,7 @@ def draw(taught, live, output):
     panels[len(joints) - 1].tick_params(labelbottom=True)  # the lowest of the second column
     panels[0].set_xlim(taught.time[0], taught.time[-1])
     figure.suptitle(f"Torque of the hand   ({taught.title()})", fontsize=11, color=TEXT)
-    figure.savefig(output, dpi=100, facecolor="white")
+    save(figure, output, dpi=100)
 
 
 def main():
@@ -93,7 +116,7 @@ def main():
         output = arguments.output or os.path.splitext(arguments.csv)[0] + ".png"
         live = Demonstration(arguments.live) if arguments.live else None
         draw(Demonstration(arguments.csv), live, output)
-    except (OSError, ValueError) as error:
+    except ValueError as error:
         print(f"draw_human_torque.py: {error}", file=sys.stderr)
         return 2
     print(output)
