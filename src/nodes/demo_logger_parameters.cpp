@@ -29,6 +29,16 @@ Alignment parseAlignment(Parameters& parameters) {
   return align == "linear" ? Alignment::linear : align == "nearest" ? Alignment::nearest : Alignment::hold;
 }
 
+/// Only of those whose columns are known without a message.
+std::optional<StreamType> parseStreamType(Parameters& parameters) {
+  if (!parameters.has("type")) return std::nullopt;
+  const std::string type = parameters.choice("type", "number", {"twist", "pose", "wrench", "number"});
+  return type == "twist"    ? StreamType::twist
+         : type == "pose"   ? StreamType::pose
+         : type == "wrench" ? StreamType::wrench
+                            : StreamType::number;
+}
+
 StreamConfiguration parseStream(Parameters& parameters) {
   StreamConfiguration stream;
   stream.name = parameters.text("name", "");
@@ -39,7 +49,12 @@ StreamConfiguration parseStream(Parameters& parameters) {
   stream.alignment = parseAlignment(parameters);
   stream.latency = parameters.number("latency", 0.0, {-10.0, 10.0, "s"});
   stream.in_order = parameters.flag("in_order", false);
+  stream.type = parseStreamType(parameters);
   if (stream.name == "teleop_cmd") {
+    if (stream.type.value_or(StreamType::twist) != StreamType::twist) {
+      throw ConfigurationError(parameters.fullName("type") + " is \"" + parameters.text("type", "") +
+                               "\", expected twist, as teleop_cmd always is, or none.");
+    }
     stream.type = StreamType::twist;
   }
   parameters.rejectUnknown();
@@ -126,9 +141,16 @@ HumanTorqueRequest parseHumanTorque(Parameters& parameters, const EffortMetadata
     request.model = group.text("model", "");
     request.wrench = group.text("wrench", "");
     request.wrench_link = group.text("wrench_link", "");
+    if (request.wrench.empty() && !request.wrench_link.empty()) {
+      throw ConfigurationError(group.fullName("wrench_link") + " is \"" + request.wrench_link + "\" but " +
+                               group.fullName("wrench") + " is not given, expected the name of the stream there.");
+    }
     group.rejectUnknown();
-  } else {
+  } else if (given->getType() == XmlRpc::XmlRpcValue::TypeBoolean) {
     observes = parameters.flag("human_torque", false);
+  } else {
+    throw ConfigurationError(parameters.fullName("human_torque") + " is " + describeGiven(*given) +
+                             ", expected true, false or a group of parameters.");
   }
   if (observes) request.observer = observer;
   return request;
@@ -161,6 +183,10 @@ RecordedWrench findWrench(const Parameters& parameters, const HumanTorqueRequest
     throw ConfigurationError(parameters.fullName("human_torque/wrench") + " is \"" + request.wrench +
                              "\", which is no stream; expected the name of one of " + parameters.fullName("streams") +
                              ", of geometry_msgs/WrenchStamped.");
+  }
+  if (stream->type.value_or(StreamType::wrench) != StreamType::wrench) {
+    throw ConfigurationError(parameters.fullName("human_torque/wrench") + " is \"" + request.wrench +
+                             "\", a stream of another type; expected one of type wrench.");
   }
   stream->type = StreamType::wrench;
   DescriptionOptions to_sensor;

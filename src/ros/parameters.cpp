@@ -6,26 +6,10 @@
 #include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
-namespace {
 
 using XmlRpc::XmlRpcValue;
 
-std::string withUnit(const std::string& text, const Range& range) {
-  return range.unit.empty() ? text : text + " " + range.unit;
-}
-
-std::string expectation(const std::string& kind, const Range& range) {
-  const bool below = std::isfinite(range.upper);
-  const bool above = std::isfinite(range.lower);
-  if (above && below)
-    return withUnit(kind + " from " + printExactly(range.lower) + " to " + printExactly(range.upper), range);
-  if (above) return withUnit(kind + " of at least " + printExactly(range.lower), range);
-  if (below) return withUnit(kind + " of at most " + printExactly(range.upper), range);
-  return range.unit.empty() ? kind : kind + " [" + range.unit + "]";
-}
-
-/// What the user wrote, for messages.
-std::string describe(const XmlRpcValue& given) {
+std::string describeGiven(const XmlRpcValue& given) {
   XmlRpcValue value = given;  // the accessors of XmlRpcValue are not const
   switch (value.getType()) {
     case XmlRpcValue::TypeBoolean:
@@ -50,6 +34,22 @@ std::string describe(const XmlRpcValue& given) {
   return "empty";
 }
 
+namespace {
+
+std::string withUnit(const std::string& text, const Range& range) {
+  return range.unit.empty() ? text : text + " " + range.unit;
+}
+
+std::string expectation(const std::string& kind, const Range& range) {
+  const bool below = std::isfinite(range.upper);
+  const bool above = std::isfinite(range.lower);
+  if (above && below)
+    return withUnit(kind + " from " + printExactly(range.lower) + " to " + printExactly(range.upper), range);
+  if (above) return withUnit(kind + " of at least " + printExactly(range.lower), range);
+  if (below) return withUnit(kind + " of at most " + printExactly(range.upper), range);
+  return range.unit.empty() ? kind : kind + " [" + range.unit + "]";
+}
+
 [[noreturn]] void refuse(const std::string& name, const std::string& found, const std::string& expected) {
   throw ConfigurationError(name + " is " + found + ", expected " + expected + ".");
 }
@@ -61,7 +61,7 @@ double toNumber(const std::string& name, XmlRpcValue value, const Range& range) 
   } else if (value.getType() == XmlRpcValue::TypeDouble) {
     number = static_cast<double>(value);
   } else {
-    refuse(name, describe(value), expectation("a number", range));
+    refuse(name, describeGiven(value), expectation("a number", range));
   }
   if (!std::isfinite(number) || number < range.lower || number > range.upper) {
     refuse(name, withUnit(printExactly(number), range), expectation("a number", range));
@@ -70,7 +70,7 @@ double toNumber(const std::string& name, XmlRpcValue value, const Range& range) 
 }
 
 int toInteger(const std::string& name, XmlRpcValue value, const Range& range) {
-  if (value.getType() != XmlRpcValue::TypeInt) refuse(name, describe(value), expectation("a whole number", range));
+  if (value.getType() != XmlRpcValue::TypeInt) refuse(name, describeGiven(value), expectation("a whole number", range));
   const int number = static_cast<int>(value);
   if (number < range.lower || number > range.upper) {
     refuse(name, withUnit(std::to_string(number), range), expectation("a whole number", range));
@@ -79,7 +79,7 @@ int toInteger(const std::string& name, XmlRpcValue value, const Range& range) {
 }
 
 std::string toText(const std::string& name, XmlRpcValue value) {
-  if (value.getType() != XmlRpcValue::TypeString) refuse(name, describe(value), "a text");
+  if (value.getType() != XmlRpcValue::TypeString) refuse(name, describeGiven(value), "a text");
   return static_cast<std::string>(value);
 }
 
@@ -87,7 +87,7 @@ std::string element(const std::string& name, int index) { return name + "[" + st
 
 template <typename Convert>
 auto toList(const std::string& name, XmlRpcValue value, const std::string& expected, Convert convert) {
-  if (value.getType() != XmlRpcValue::TypeArray) refuse(name, describe(value), expected);
+  if (value.getType() != XmlRpcValue::TypeArray) refuse(name, describeGiven(value), expected);
   std::vector<decltype(convert(name, value))> list;
   list.reserve(static_cast<std::size_t>(value.size()));
   for (int i = 0; i < value.size(); ++i) list.push_back(convert(element(name, i), value[i]));
@@ -99,7 +99,7 @@ auto toList(const std::string& name, XmlRpcValue value, const std::string& expec
 Parameters::Parameters(std::string name, const XmlRpcValue& values) : name_(std::move(name)), values_(values) {
   const XmlRpcValue::Type type = values_.getType();
   if (type != XmlRpcValue::TypeStruct && type != XmlRpcValue::TypeInvalid) {
-    refuse(name_, describe(values_), "a group of parameters");
+    refuse(name_, describeGiven(values_), "a group of parameters");
   }
 }
 
@@ -120,7 +120,7 @@ std::optional<XmlRpcValue> Parameters::raw(const std::string& key) {
 bool Parameters::flag(const std::string& key, bool fallback) {
   std::optional<XmlRpcValue> value = raw(key);
   if (!value) return fallback;
-  if (value->getType() != XmlRpcValue::TypeBoolean) refuse(fullName(key), describe(*value), "true or false");
+  if (value->getType() != XmlRpcValue::TypeBoolean) refuse(fullName(key), describeGiven(*value), "true or false");
   return static_cast<bool>(*value);
 }
 

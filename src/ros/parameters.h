@@ -62,6 +62,9 @@ class Parameters {
   std::set<std::string> known_;
 };
 
+/// What the user wrote, for messages: "a list of 2", "the text \"yes\"", 0.5.
+std::string describeGiven(const XmlRpc::XmlRpcValue& given);
+
 /// The parameters below `node`'s namespace, for ros::NodeHandle("~") the private ones.
 Parameters readParameters(const ros::NodeHandle& node);
 

@@ -25,11 +25,13 @@ class InputsTest : public RecorderUnderTest {
     return publisher;
   }
 
-  void setStream(int index, const std::string& name, const std::string& topic, const std::string& align = "hold") {
+  void setStream(int index, const std::string& name, const std::string& topic, const std::string& align = "hold",
+                 const std::string& type = "") {
     XmlRpc::XmlRpcValue stream;
     stream["name"] = name;
     stream["topic"] = topic;
     stream["align"] = align;
+    if (!type.empty()) stream["type"] = type;
     streams_[index] = stream;
     ros::param::set(namespace_ + "/demo_logger/streams", streams_);
   }
@@ -122,6 +124,30 @@ TEST_F(InputsTest, StreamsOfTheConfigurationGetTheirColumns) {
   EXPECT_EQ(column(demonstration, "stick_axis0"), std::vector<double>(50, 0.5));
   EXPECT_EQ(column(demonstration, "stick_button0"), std::vector<double>(50, 1.0));
   EXPECT_EQ(column(demonstration, "force_fz"), std::vector<double>(50, 9.0));
+}
+
+TEST_F(InputsTest, AStreamThatSaysItsTypeIsRecordedHoweverLateItComes) {
+  setStream(0, "hand", "human_wrench", "hold", "wrench");
+  setStream(1, "guest", "guest_wrench");
+  start({"_wait_for_streams:=0.0"});
+  move(50);
+  ASSERT_TRUE(waitForRows(50));
+  ros::Publisher hand = connect<geometry_msgs::WrenchStamped>("human_wrench");
+  ros::Publisher guest = connect<geometry_msgs::WrenchStamped>("guest_wrench");
+  geometry_msgs::WrenchStamped wrench;
+  wrench.header.stamp = ros::Time::now();
+  wrench.wrench.force.z = -4.0;
+  hand.publish(wrench);
+  guest.publish(wrench);
+  ASSERT_TRUE(waitUntilHeard("hand"));
+  move(20);
+  const Demonstration demonstration = finish();
+  const std::vector<double> force = column(demonstration, "hand_fz");
+  ASSERT_EQ(force.size(), 70U);
+  for (std::size_t row = 0; row < 50; ++row) EXPECT_TRUE(std::isnan(force[row])) << "row " << row;
+  for (std::size_t row = 50; row < 70; ++row) EXPECT_EQ(force[row], -4.0) << "row " << row;
+  const std::vector<std::string> all = names(demonstration);
+  EXPECT_EQ(std::find(all.begin(), all.end(), "guest_fz"), all.end()) << "nobody could know its columns in time";
 }
 
 TEST_F(InputsTest, AStreamOfATypeThatCannotBeRecordedIsAnErrorInTheDiagnostics) {

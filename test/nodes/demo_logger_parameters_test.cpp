@@ -66,6 +66,30 @@ TEST(DemoLoggerParametersTest, StreamsAreAddedToTheTeleopCommandOrDescribeIt) {
   EXPECT_TRUE(streams[1].in_order);
 }
 
+TEST(DemoLoggerParametersTest, AStreamThatSaysItsTypeHasItsColumnsBeforeAnyonePublishes) {
+  const auto typeOf = [](const std::string& type) {
+    XmlRpcValue values;
+    values["streams"][0]["name"] = "hand";
+    if (!type.empty()) values["streams"][0]["type"] = type;
+    return parse(values).recorder.synchroniser.streams.at(1).type;
+  };
+  EXPECT_EQ(typeOf("twist"), StreamType::twist);
+  EXPECT_EQ(typeOf("pose"), StreamType::pose);
+  EXPECT_EQ(typeOf("wrench"), StreamType::wrench);
+  EXPECT_EQ(typeOf("number"), StreamType::number);
+  EXPECT_EQ(typeOf(""), std::nullopt) << "that of its topic";
+  EXPECT_EQ(refusal([](XmlRpcValue& values) {
+              values["streams"][0]["name"] = "device";
+              values["streams"][0]["type"] = "joy";
+            }),
+            "/demo_logger/streams[0]/type is \"joy\", expected one of twist, pose, wrench, number.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) {
+              values["streams"][0]["name"] = "teleop_cmd";
+              values["streams"][0]["type"] = "pose";
+            }),
+            "/demo_logger/streams[0]/type is \"pose\", expected twist, as teleop_cmd always is, or none.");
+}
+
 TEST(DemoLoggerParametersTest, ATipMakesTheChainsJointsTheArm) {
   XmlRpcValue values;
   values["tip"] = "tool_tip";
@@ -181,7 +205,20 @@ TEST(DemoLoggerParametersTest, WhatHumanTorqueCannotDoWithoutIsNamed) {
             "/demo_logger/human_torque is given but robot_description is not set, here or in a namespace above; "
             "expected the URDF of the arm there, or neither.");
   EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"] = "yes"; }, twoLinkUrdf()),
-            "/demo_logger/human_torque is the text \"yes\", expected true or false.");
+            "/demo_logger/human_torque is the text \"yes\", expected true, false or a group of parameters.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"] = 3; }, twoLinkUrdf()),
+            "/demo_logger/human_torque is 3, expected true, false or a group of parameters.");
+  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"]["wrench_link"] = "link_1"; }, twoLinkUrdf()),
+            "/demo_logger/human_torque/wrench_link is \"link_1\" but /demo_logger/human_torque/wrench is not given, "
+            "expected the name of the stream there.");
+  EXPECT_EQ(refusal(
+                [](XmlRpcValue& values) {
+                  values["human_torque"]["wrench"] = "ft";
+                  values["streams"][0]["name"] = "ft";
+                  values["streams"][0]["type"] = "twist";
+                },
+                twoLinkUrdf()),
+            "/demo_logger/human_torque/wrench is \"ft\", a stream of another type; expected one of type wrench.");
   EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"]["gain"] = 0.0; }, twoLinkUrdf()),
             "/demo_logger/human_torque/gain is 0 1/s, expected a number from 0.1 to 10000 1/s.");
   EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"]["wrench"] = "ft"; }, twoLinkUrdf()),

@@ -130,5 +130,18 @@ TEST(ParametersTest, GroupsInAListAreReadLikeTheNamespaceItself) {
   EXPECT_EQ(streams[0].fullName("latncy"), "/arm/streams[0]/latncy");
 }
 
+TEST(ParametersTest, AListInTheWrongPlaceIsCounted) {
+  XmlRpc::XmlRpcValue values;
+  values["gain"][0] = 1.0;
+  values["gain"][1] = 2.0;
+  Parameters parameters("/arm", values);
+  try {
+    parameters.flag("gain", false);
+    FAIL() << "a list is no flag";
+  } catch (const ConfigurationError& error) {
+    EXPECT_STREQ(error.what(), "/arm/gain is a list of 2, expected true or false.");
+  }
+}
+
 }  // namespace
 }  // namespace demo_logger
