@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <clocale>
+#include <cmath>
 #include <limits>
 
 #include "demo_logger/trajectory/print.h"
@@ -37,6 +38,13 @@ TEST(PrintTest, TheLocaleChangesNothing) {
   EXPECT_EQ(print(0.5), "0.5");
   EXPECT_EQ(print(0.5, 2), "0.50");
   std::setlocale(LC_NUMERIC, "C");
+}
+
+TEST(PrintTest, WhatIsNoNumberHasNoSign) {
+  const double negative = std::copysign(std::numeric_limits<double>::quiet_NaN(), -1.0);
+  EXPECT_EQ(print(negative), "nan");
+  EXPECT_EQ(printExactly(negative), "nan");
+  EXPECT_EQ(print(negative, 3), "nan");
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 namespace demo_logger {
 
-// Numbers in sentences for people, with `.` whatever the locale.
+// Numbers in sentences for people, with `.` whatever the locale. What is no number is nan, without a sign.
 
 /// Six significant digits at most: 0.5, 1e-05, 1234.5.
 std::string print(double number);
