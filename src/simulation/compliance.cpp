@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "demo_logger/robot/robot_model.h"
@@ -87,29 +88,53 @@ void refuseDamping(const ImpedanceGains& gains, const RobotDescription& arm, std
                            ", or a higher control rate.");
 }
 
-void refuseStiffness(const ImpedanceGains& gains, const RobotDescription& arm, double radius, double h) {
-  Eigen::Index worst = 0;
-  (0.5 * h * gains.stiffness - gains.damping).maxCoeff(&worst);
-  const ArmJoint& joint = arm.joints[static_cast<std::size_t>(worst)];
-  const double stiffness = gains.stiffness[worst];
-  const double damping = gains.damping[worst];
-  throw ConfigurationError("impedance: stiffness of " + joint.name + " is " + print(stiffness) + stiffnessUnit(joint) +
-                           " with a damping of " + print(damping) + dampingUnit(joint) + ", expected at most " +
-                           print(2.0 * damping / h) + stiffnessUnit(joint) +
-                           ": the held spring would swing up, by a factor of " + print(radius) +
-                           " each control period of " + print(h) + " s. Try a damping of " + print(h * stiffness) +
-                           dampingUnit(joint) + " or more.");
-}
-
-bool alwaysDampedEnough(const ImpedanceGains& gains, double h) {
-  return (gains.damping.array() >= 0.5 * h * gains.stiffness.array()).all();
-}
-
 double dampingRate(const ImpedanceGains& gains, const Eigen::MatrixXd& M) {
   const Eigen::MatrixXd K_d = gains.damping.asDiagonal();
   return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(K_d, M, Eigen::EigenvaluesOnly)
       .eigenvalues()
       .maxCoeff();
+}
+
+/// The largest share s of the stiffness whose damping s h K_p fits beside the present one: as λmax(M⁻¹ (A + B)) is at
+/// most the sum of both, adding it, at one joint or at all, stays within 1/h. `rate` is that of the present damping.
+double dampableShare(const ImpedanceGains& gains, const RobotModel& model, const std::vector<Eigen::VectorXd>& postures,
+                     double rate, double h) {
+  constexpr double kMargin = 0.8;
+  const double largest = gains.stiffness.maxCoeff();
+  const ImpedanceGains pattern{gains.stiffness, gains.stiffness / largest};  // so that no stiffness overflows
+  double per_damping = 0.0;
+  for (const Eigen::VectorXd& q : postures)
+    per_damping = std::max(per_damping, dampingRate(pattern, inertia(model, q)));
+  return std::min(1.0, kMargin * std::max(0.0, 1.0 / h - rate) / per_damping / (h * largest));
+}
+
+/// What to try instead is taken if it is followed, at the one joint or at all.
+std::string stiffnessAdvice(const ArmJoint& joint, double stiffness, double bound, double share, double h) {
+  const std::string damping = print(share * h * stiffness) + dampingUnit(joint);
+  if (share >= 1.0) return "Try a damping of " + damping + ".";
+  const double least = 0.8 * bound;  // with the damping as it is
+  if (least >= share * stiffness) return "Try a stiffness of " + print(least) + stiffnessUnit(joint) + ".";
+  return "More damping alone would not do: try a stiffness of " + print(share * stiffness) + stiffnessUnit(joint) +
+         " with a damping of " + damping + ".";
+}
+
+void refuseStiffness(const ImpedanceGains& gains, const RobotDescription& arm, double radius, double share, double h) {
+  Eigen::Index worst = 0;
+  // By the ratio: of differences between huge stiffnesses, rounding would leave nothing.
+  (gains.stiffness.array() / gains.damping.array().max(std::numeric_limits<double>::min())).maxCoeff(&worst);
+  const ArmJoint& joint = arm.joints[static_cast<std::size_t>(worst)];
+  const double stiffness = gains.stiffness[worst];
+  const double damping = gains.damping[worst];
+  const double bound = 2.0 * damping / h;
+  throw ConfigurationError("impedance: stiffness of " + joint.name + " is " + print(stiffness) + stiffnessUnit(joint) +
+                           " with a damping of " + print(damping) + dampingUnit(joint) + ", expected at most " +
+                           print(bound) + stiffnessUnit(joint) + ": the held spring would swing up, by a factor of " +
+                           print(radius) + " each control period of " + print(h) + " s. " +
+                           stiffnessAdvice(joint, stiffness, bound, share, h));
+}
+
+bool alwaysDampedEnough(const ImpedanceGains& gains, double h) {
+  return (gains.damping.array() >= 0.5 * h * gains.stiffness.array()).all();
 }
 
 }  // namespace
@@ -188,7 +213,7 @@ void requireStable(const ImpedanceGains& gains, const RobotDescription& arm, dou
     if (!stability.stable) radius = std::max(radius, stability.spectral_radius);
   }
   if (rate > 1.0 / h) refuseDamping(gains, arm, worst, rate, h);
-  if (radius > 0.0) refuseStiffness(gains, arm, radius, h);
+  if (radius > 0.0) refuseStiffness(gains, arm, radius, dampableShare(gains, model, postures, rate, h), h);
 }
 
 }  // namespace demo_logger

@@ -88,7 +88,7 @@ TEST(ComplianceTest, AHeldSpringNeedsHalfAPeriodOfItselfAsDamping) {
                           0),
             0U)
       << message;  // |z|² = 1 + h² K_p / 2 − h K_d = 1.0001
-  EXPECT_NE(message.find(" each control period of 0.001 s. Try a damping of 0.4 N m s/rad or more."), std::string::npos)
+  EXPECT_NE(message.find(" each control period of 0.001 s. Try a damping of 0.4 N m s/rad."), std::string::npos)
       << message;
 }
 
@@ -119,6 +119,47 @@ TEST(ComplianceTest, ABoundThatIsFollowedIsTaken) {
   const double bound = std::stod(message.substr(message.find(key) + key.size()));
   EXPECT_EQ(judged(arm, {seven(0.0), seven(0.999 * bound)}), "taken") << message;
   EXPECT_NE(judged(arm, {seven(0.0), seven(1.001 * bound)}), "taken") << message;
+}
+
+/// The number after `key` in `message`, or `otherwise` if it does not say so.
+double adviceIn(const std::string& message, const std::string& key, double otherwise) {
+  const std::size_t place = message.rfind(key);
+  return place == std::string::npos ? otherwise : std::stod(message.substr(place + key.size()));
+}
+
+TEST(ComplianceTest, AdviceOnAStiffnessIsTakenIfItIsFollowed) {
+  const RobotDescription arm = describeDemoArm();
+  const ImpedanceGains defaults = defaultImpedanceGains(arm, kPeriod);
+  for (const double stiffness : {2000.0, 1e4, 1e7, 1e300}) {
+    for (const std::vector<double>& damping : {std::vector<double>{}, {0.0}, {1e-9}, {0.9}}) {
+      const std::string refusal = judged(arm, impedanceGains(arm, {stiffness}, damping, defaults));
+      if (refusal == "taken") continue;
+      const std::string advice = refusal.substr(refusal.find(" s. ") + 4);
+      const double stiff = adviceIn(advice, "stiffness of ", stiffness);
+      const double damp = adviceIn(advice, "damping of ", -1.0);
+      EXPECT_GT(stiff, 0.0) << refusal;
+      EXPECT_EQ(judged(arm, impedanceGains(arm, {stiff}, damp < 0.0 ? damping : std::vector<double>{damp}, defaults)),
+                "taken")
+          << refusal;
+    }
+  }
+}
+
+TEST(ComplianceTest, AdviceForOneJointAfterTheOtherComesToAnEnd) {
+  const RobotDescription arm = describeDemoArm();
+  ImpedanceGains gains{seven(3000.0), defaultImpedanceGains(arm, kPeriod).damping};
+  gains.stiffness[2] = 1e5;
+  std::string refusal = judged(arm, gains);
+  for (int followed = 0; refusal != "taken"; ++followed) {
+    ASSERT_LE(followed, 7) << refusal;
+    const std::string key = "stiffness of joint_";
+    ASSERT_EQ(refusal.rfind("impedance: " + key, 0), 0U) << refusal;
+    const Eigen::Index joint = std::stoi(refusal.substr(refusal.find(key) + key.size())) - 1;
+    const std::string advice = refusal.substr(refusal.find(" s. ") + 4);
+    gains.stiffness[joint] = adviceIn(advice, "stiffness of ", gains.stiffness[joint]);
+    gains.damping[joint] = adviceIn(advice, "damping of ", gains.damping[joint]);
+    refusal = judged(arm, gains);
+  }
 }
 
 TEST(ComplianceTest, TheSampleSeesWhatAFarLargerOneSees) {
