@@ -1,7 +1,6 @@
 #include "src/nodes/simulated_hand_node.h"
 
 #include <geometry_msgs/WrenchStamped.h>
-#include <sensor_msgs/Joy.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +10,6 @@
 namespace demo_logger {
 namespace {
 
-constexpr std::uint32_t kQueue = 100;
-constexpr double kMostButtons = 63.0;
-constexpr double kMostListeners = 10.0;
-constexpr double kPatience = 10.0;   // [s] between words about a missing arm
 constexpr double kJoyPeriod = 0.02;  // [s]
 
 geometry_msgs::Vector3 toMessage(const Eigen::Vector3d& vector) {
@@ -48,10 +43,8 @@ SimulatedHandParameters readSimulatedHandParameters(Parameters& parameters, cons
   read("grasp_ramp", hand.grasp_ramp, "s");
   read("release_ramp", hand.release_ramp, "s");
   read("tremor", hand.tremor, "N");
-  result.start_button = parameters.integer("start_button", -1, {-1.0, kMostButtons, ""});
-  result.stop_button = parameters.integer("stop_button", -1, {-1.0, kMostButtons, ""});
-  const int listeners = result.start_button < 0 && result.stop_button < 0 ? 0 : 1;
-  result.listeners = static_cast<std::uint32_t>(parameters.integer("listeners", listeners, {0.0, kMostListeners, ""}));
+  result.buttons = readOperatorButtons(parameters);
+  result.listeners = readListeners(parameters, result.buttons.any() ? 1 : 0);
   parameters.rejectUnknown();
   result.robot = describeRobot(readRobotDescription(private_node), chain);
   return result;
@@ -59,18 +52,15 @@ SimulatedHandParameters readSimulatedHandParameters(Parameters& parameters, cons
 
 SimulatedHandNode::SimulatedHandNode(ros::NodeHandle node, const SimulatedHandParameters& parameters)
     : parameters_(parameters), arm_(parameters.robot), hand_(parameters.hand) {
-  wrench_ = node.advertise<geometry_msgs::WrenchStamped>("human_wrench", kQueue);
-  joy_ = node.advertise<sensor_msgs::Joy>("joy", kQueue);
+  wrench_ = node.advertise<geometry_msgs::WrenchStamped>("human_wrench", kOperatorQueue);
+  joy_ = node.advertise<sensor_msgs::Joy>("joy", kOperatorQueue);
   // Without delay: TCP likes to collect small messages for some 40 ms, which no hand could hold an arm with.
-  truth_ = node.subscribe("ground_truth/joint_states", kQueue, &SimulatedHandNode::see, this,
+  truth_ = node.subscribe("ground_truth/joint_states", kOperatorQueue, &SimulatedHandNode::see, this,
                           ros::TransportHints().tcpNoDelay());
-  reminder_ = node.createWallTimer(ros::WallDuration(kPatience), [this](const ros::WallTimerEvent&) {
-    if (begun_) return;
-    ROS_WARN_STREAM("waiting for joint states on " << truth_.getTopic() << ", for an arm that listens to "
-                                                   << wrench_.getTopic() << " and for " << parameters_.listeners
-                                                   << " nodes that listen to " << joy_.getTopic() << ", now "
-                                                   << joy_.getNumSubscribers() << ".");
-  });
+  reminder_ =
+      remindOfWaiting(node, joy_, parameters.listeners,
+                      "joint states on " + truth_.getTopic() + ", for an arm that listens to " + wrench_.getTopic(),
+                      [this] { return !begun_; });
 }
 
 void SimulatedHandNode::run() {
@@ -86,10 +76,10 @@ bool SimulatedHandNode::awaited() const {
 }
 
 void SimulatedHandNode::see(const sensor_msgs::JointState& state) {
-  if (!begun_ && !awaited()) return;
+  if (hand_.finished() || (!begun_ && !awaited())) return;
   const std::optional<ArmState> arm = arm_.read(state, /*with_velocities=*/true);
   if (!arm) {
-    ROS_ERROR_STREAM_THROTTLE(kPatience, arm_.complaint(truth_.getTopic(), true));
+    ROS_ERROR_STREAM_THROTTLE(kReminderPeriod, arm_.complaint(truth_.getTopic(), true));
     return;
   }
   begun_ = true;
@@ -99,9 +89,7 @@ void SimulatedHandNode::see(const sensor_msgs::JointState& state) {
   const HandAction action = hand_.act(static_cast<Nanoseconds>(state.header.stamp.toNSec()), tool);
   push(action.wrench, tool.X_base_tool, state.header.stamp);
   press(action, state.header.stamp);
-  if (!hand_.finished()) return;
-  ROS_INFO("the task is done.");
-  ros::requestShutdown();
+  if (hand_.finished()) endWithTask();
 }
 
 /// Also when it holds nothing: then the arm need not wait until the last push has timed out.
@@ -116,7 +104,7 @@ void SimulatedHandNode::push(const TipWrench& wrench, const Eigen::Isometry3d& X
 }
 
 void SimulatedHandNode::press(const HandAction& action, const ros::Time& stamp) {
-  const int most = std::max(parameters_.start_button, parameters_.stop_button);
+  const int most = std::max(parameters_.buttons.start, parameters_.buttons.stop);
   if (most < 0 || (next_joy_ && stamp < *next_joy_)) return;
   next_joy_ = stamp + ros::Duration(kJoyPeriod);
   sensor_msgs::Joy joy;
@@ -125,8 +113,8 @@ void SimulatedHandNode::press(const HandAction& action, const ros::Time& stamp) 
   const auto set = [&](int button, bool pressed) {
     if (button >= 0 && pressed) joy.buttons[static_cast<std::size_t>(button)] = 1;
   };
-  set(parameters_.start_button, action.start_pressed);
-  set(parameters_.stop_button, action.stop_pressed);
+  set(parameters_.buttons.start, action.start_pressed);
+  set(parameters_.buttons.stop, action.stop_pressed);
   joy_.publish(joy);
 }
 

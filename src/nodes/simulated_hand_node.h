@@ -8,14 +8,14 @@
 
 #include "demo_logger/simulation/simulated_hand.h"
 #include "src/nodes/seen_arm.h"
+#include "src/nodes/simulated_operator.h"
 #include "src/ros/parameters.h"
 
 namespace demo_logger {
 
 struct SimulatedHandParameters {
   SimulatedHandConfiguration hand;
-  int start_button = -1;  // of joy, pressed for the recorder at the beginning and at the end; -1: none
-  int stop_button = -1;
+  OperatorButtons buttons;
   std::uint32_t listeners = 0;  // nodes that must listen to joy before the hand begins
   RobotDescription robot;
 };

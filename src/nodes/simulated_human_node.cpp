@@ -10,20 +10,16 @@
 #include "demo_logger/simulation/simulated_human.h"
 #include "src/nodes/seen_arm.h"
 #include "src/nodes/simulated_hand_node.h"
+#include "src/nodes/simulated_operator.h"
 #include "src/nodes/teleop_parameters.h"
 #include "src/ros/node_main.h"
 
 namespace demo_logger {
 namespace {
 
-constexpr std::uint32_t kQueue = 100;
-constexpr double kMostButtons = 63.0;
-constexpr double kMostListeners = 10.0;
-constexpr double kPatience = 10.0;  // [s] between words about a missing arm
-
 struct SimulatedHumanParameters {
   SimulatedHumanConfiguration human;
-  std::uint32_t listeners = 1;  // nodes that must listen to joy before the human begins, lest a button is not heard
+  std::uint32_t listeners = 1;  // nodes that must listen to joy before the human begins
   RobotDescription robot;
 };
 
@@ -39,9 +35,10 @@ SimulatedHumanParameters readSimulatedHumanParameters(Parameters& parameters, co
   human.reaction_delay = parameters.number("reaction_delay", human.reaction_delay, {0.0, 0.5, "s"});
   human.tremor = parameters.number("tremor", human.tremor, {0.0, 0.2, "of an axis"});
   human.largest_rate = parameters.number("largest_rate", human.largest_rate, {0.1, 1000.0, "1/s"});
-  human.start_button = parameters.integer("start_button", -1, {-1.0, kMostButtons, ""});
-  human.stop_button = parameters.integer("stop_button", -1, {-1.0, kMostButtons, ""});
-  result.listeners = static_cast<std::uint32_t>(parameters.integer("listeners", 1, {0.0, kMostListeners, ""}));
+  const OperatorButtons buttons = readOperatorButtons(parameters);
+  human.start_button = buttons.start;
+  human.stop_button = buttons.stop;
+  result.listeners = readListeners(parameters, result.listeners);
   Parameters device = parameters.group("device");
   human.device = readTeleoperation(device);
   device.rejectUnknown();
@@ -57,32 +54,26 @@ class SimulatedHumanNode {
         human_(parameters.human),
         listeners_(parameters.listeners),
         period_(fromSeconds(parameters.human.reading_period)) {
-    joy_ = node.advertise<sensor_msgs::Joy>("joy", kQueue);
-    truth_ = node.subscribe("ground_truth/joint_states", kQueue, &SimulatedHumanNode::see, this);
-    reminder_ = node.createWallTimer(ros::WallDuration(kPatience), [this](const ros::WallTimerEvent&) {
-      if (next_reading_) return;
-      ROS_WARN_STREAM("waiting for joint states on " << truth_.getTopic() << " and for " << listeners_
-                                                     << " nodes that listen to " << joy_.getTopic() << ", now "
-                                                     << joy_.getNumSubscribers() << ".");
-    });
+    joy_ = node.advertise<sensor_msgs::Joy>("joy", kOperatorQueue);
+    truth_ = node.subscribe("ground_truth/joint_states", kOperatorQueue, &SimulatedHumanNode::see, this);
+    reminder_ = remindOfWaiting(node, joy_, listeners_, "joint states on " + truth_.getTopic(),
+                                [this] { return !next_reading_; });
   }
 
  private:
   /// The readings are due by the arm's own stamps: then they are the same whatever the machine is busy with.
   void see(const sensor_msgs::JointState& state) {
+    if (human_.finished()) return;
     const auto now = static_cast<Nanoseconds>(state.header.stamp.toNSec());
     if (next_reading_ ? now < *next_reading_ : joy_.getNumSubscribers() < listeners_) return;
     const std::optional<ArmState> arm = arm_.read(state, /*with_velocities=*/false);
     if (!arm) {
-      ROS_ERROR_STREAM_THROTTLE(kPatience, arm_.complaint(truth_.getTopic(), false));
+      ROS_ERROR_STREAM_THROTTLE(kReminderPeriod, arm_.complaint(truth_.getTopic(), false));
       return;
     }
     next_reading_ = next_reading_ ? *next_reading_ + period_ : now + period_;
     publish(human_.next(now, arm_.model().forwardKinematics(arm->q)), state.header.stamp);
-    if (human_.finished()) {
-      ROS_INFO("the task is done.");
-      ros::requestShutdown();
-    }
+    if (human_.finished()) endWithTask();
   }
 
   void publish(const DeviceReading& reading, const ros::Time& stamp) {
