@@ -13,8 +13,9 @@ struct EffortSeries {
   Eigen::VectorXd variance;  // of the sensor's noise; 0 for commands
 };
 
-/// `time` increases. Held: `effort` at t − h/2, by a cubic through the four samples around that instant (fewer where
-/// some are missing or none come before). Instant: smoothed, where there are enough samples to tell noise from torque.
+/// `time` increases. Held: `effort` at t − h/2, by a cubic through the four known samples around that instant; along a
+/// straight line across samples that are missing; as the first known one before that, for nothing is extrapolated.
+/// Instant: smoothed, where there are enough samples to tell noise from torque.
 EffortSeries torqueAtStamps(const std::vector<double>& time, const Eigen::VectorXd& effort,
                             const EffortMetadata& meaning);
 

@@ -19,8 +19,9 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kNoiseTimes = 5.0;  // a residual that sensors alone may leave
-constexpr int kRounds = 4;           // for weights, friction velocities and the payload's own inertia to settle
+constexpr double kNoiseTimes = 5.0;     // a residual that sensors alone may leave
+constexpr double kDoubtfulTimes = 2.0;  // a residual's tolerance, above which a part without a hand is doubted
+constexpr int kRounds = 4;              // for weights, friction velocities and the payload's own inertia to settle
 constexpr std::array<double, 5> kFrictionVelocities = {0.01, 0.02, 0.05, 0.1, 0.2};  // [rad/s or m/s]
 constexpr double kStepGain =
     0.8;  // of what the best of them leaves, that a step must come below; near it few rows tell
@@ -242,6 +243,21 @@ std::string whyUndetermined(const FitResult& result, const FitOptions& options) 
          "worse (--model-error)";
 }
 
+/// Parts that were found agree with one model; those that were given may not.
+std::vector<std::string> doubtsOf(const RobotDescription& robot, const std::vector<double>& residual,
+                                  const Eigen::VectorXd& tolerance) {
+  std::vector<std::string> doubts;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    const double tolerated = tolerance[static_cast<Index>(i)];
+    if (!(residual[i] > kDoubtfulTimes * tolerated)) continue;
+    const std::string unit = robot.joints[i].type == JointType::prismatic ? " N" : " N m";
+    doubts.push_back(robot.joints[i].name + ": what is left in the given parts is " + print(residual[i], 3) + unit +
+                     " (root mean square), where the model may be off by " + print(tolerated, 3) + unit +
+                     "; is the hand really away there?");
+  }
+  return doubts;
+}
+
 }  // namespace
 
 FitResult fitModel(const RobotDescription& robot, const std::vector<const Demonstration*>& recordings,
@@ -272,6 +288,7 @@ FitResult fitModel(const RobotDescription& robot, const std::vector<const Demons
     fit.makeBodiesPossible();
   }
   result.residual = fit.residual(fit.estimate().value);
+  if (!options.hand_free.empty()) result.doubts = doubtsOf(robot, result.residual, tolerance.largest);
   describeFit(problem, fit.estimate(), options, meaning, result);
   return result;
 }

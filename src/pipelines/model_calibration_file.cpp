@@ -129,7 +129,7 @@ ModelCalibration readModelCalibration(const std::filesystem::path& path) {
   const StrictYaml yaml = StrictYaml::read(path.string());
   yaml.allow({"format", "tip", "side", "payload", "joints", "bodies"});
   ModelCalibration calibration;
-  if (yaml.has("format")) yaml.word("format", {kFormat});
+  if (yaml.has("format")) yaml.word("format", {kFormat});  // else refused below, after what is plainly wrong
   if (yaml.has("tip")) calibration.tip = yaml.text("tip");
   if (yaml.has("side")) calibration.side = yaml.word("side", {"motor", "link"});
   if (yaml.has("payload")) calibration.payload = readBody(yaml.mapping("payload"), kMass);
@@ -141,10 +141,11 @@ ModelCalibration readModelCalibration(const std::filesystem::path& path) {
     const StrictYaml bodies = yaml.mapping("bodies");
     for (const std::string& name : bodies.keys()) calibration.bodies[name] = readBody(bodies.mapping(name), kBodyMass);
   }
+  yaml.word("format", {kFormat});
   return calibration;
 }
 
-void writeModelCalibration(const std::filesystem::path& path, const ModelCalibration& calibration, bool overwrite) {
+std::string textOf(const ModelCalibration& calibration) {
   Writer writer;
   writer.text("format", kFormat);
   if (!calibration.tip.empty()) writer.text("tip", calibration.tip, "frame of the payload");
@@ -176,7 +177,11 @@ void writeModelCalibration(const std::filesystem::path& path, const ModelCalibra
     }
     writer.end();
   }
-  writeFileAtomically(path, writer.finish(), overwrite);
+  return writer.finish();
+}
+
+void writeModelCalibration(const std::filesystem::path& path, const ModelCalibration& calibration, bool overwrite) {
+  writeFileAtomically(path, textOf(calibration), overwrite);
 }
 
 }  // namespace demo_logger

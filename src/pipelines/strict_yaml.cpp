@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -14,6 +15,7 @@ namespace demo_logger {
 namespace {
 
 constexpr std::size_t kLongestQuote = 40;
+constexpr std::uintmax_t kLargestFile = 1000000;  // [B]
 
 std::string listed(const std::vector<std::string>& words) {
   std::string list;
@@ -40,13 +42,22 @@ StrictYaml::StrictYaml(std::string file, std::string prefix, YAML::Node node)
 StrictYaml StrictYaml::read(const std::string& path) {
   std::error_code status;
   if (!std::filesystem::exists(path, status)) throw FileError(path + ": no such file, expected a model (YAML)");
-  std::ifstream file(path, std::ios::binary);
-  if (std::filesystem::is_directory(path, status) || !file) {
-    throw FileError(path + ": cannot be read, expected a model (YAML)");
+  if (!std::filesystem::is_regular_file(path, status)) {  // a pipe or a device may never end
+    throw FileError(path + ": cannot be read, as it is no regular file, expected a model (YAML)");
   }
+  if (std::filesystem::file_size(path, status) > kLargestFile) {
+    throw FileError(path + ": is larger than 1 MB, expected a model (YAML)");
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FileError(path + ": cannot be read, expected a model (YAML)");
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   try {
-    const YAML::Node root = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      throw FileError(path + ":" + std::to_string(documents[1].Mark().line + 1) +
+                      ": a second YAML document begins, expected one only");
+    }
+    const YAML::Node root = documents.empty() ? YAML::Node() : documents.front();
     if (!root.IsMap()) throw FileError(path + ": holds " + shown(root) + ", expected a mapping of keys to values");
     return {path, "", root};
   } catch (const YAML::Exception& error) {

@@ -7,10 +7,31 @@
 #include <system_error>
 #include <thread>
 
+#include "demo_logger/formats/sidecar.h"
 #include "demo_logger/trajectory/error.h"
 #include "src/tool/recordings.h"
 
 namespace demo_logger {
+namespace {
+
+/// Files that something must not be written to, by their places, with what they are.
+using Places = std::map<std::filesystem::path, std::string>;
+
+std::filesystem::path placeOf(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(file, error);
+  const std::filesystem::path place = std::filesystem::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : place;
+}
+
+void refuseIfAmong(const Places& places, const std::filesystem::path& file) {
+  const auto found = places.find(placeOf(file));
+  if (found == places.end()) return;
+  throw FileError(file.string() + ": would overwrite " + found->second +
+                  ", which --force does not allow either; choose another name");
+}
+
+}  // namespace
 
 std::vector<InputAndOutput> planOutputs(const std::vector<std::string>& inputs, const std::filesystem::path& output,
                                         bool force) {
@@ -37,6 +58,31 @@ std::vector<InputAndOutput> planOutputs(const std::vector<std::string>& inputs, 
     }
   }
   return plan;
+}
+
+void refuseToDestroy(const std::vector<InputAndOutput>& plan, const std::vector<std::string>& also_read,
+                     const std::string& also_written) {
+  Places read;
+  for (const std::string& file : also_read) {
+    if (!file.empty()) read.emplace(placeOf(file), "the input " + file);
+  }
+  for (const InputAndOutput& entry : plan) {
+    const std::filesystem::path sidecar = sidecarPath(entry.input);
+    read.emplace(placeOf(entry.input), "the input " + entry.input.string());
+    if (std::filesystem::exists(sidecar)) {
+      read.emplace(placeOf(sidecar), "the sidecar of the input " + entry.input.string());
+    }
+  }
+  Places written;
+  for (const InputAndOutput& entry : plan) {
+    refuseIfAmong(read, entry.output);
+    refuseIfAmong(read, sidecarPath(entry.output));
+    written.emplace(placeOf(entry.output), "the output " + entry.output.string());
+    written.emplace(placeOf(sidecarPath(entry.output)), "the sidecar of the output " + entry.output.string());
+  }
+  if (also_written.empty()) return;
+  refuseIfAmong(read, also_written);
+  refuseIfAmong(written, also_written);
 }
 
 void makeDirectories(const std::vector<InputAndOutput>& plan) {

@@ -20,6 +20,12 @@ struct InputAndOutput {
 std::vector<InputAndOutput> planOutputs(const std::vector<std::string>& inputs, const std::filesystem::path& output,
                                         bool force);
 
+/// Throws FileError if anything that is written is among what is read, or `also_written` among the outputs: that would
+/// destroy what was recorded or just made, so --force does not allow it. Recordings count with their sidecars;
+/// `also_read` and `also_written` may be empty.
+void refuseToDestroy(const std::vector<InputAndOutput>& plan, const std::vector<std::string>& also_read,
+                     const std::string& also_written);
+
 /// The directories that the plan's outputs need; to be called when everything that can fail is done.
 void makeDirectories(const std::vector<InputAndOutput>& plan);
 

@@ -71,6 +71,7 @@ void addConversionOptions(CLI::App& verb, ConversionOptions& options, const std:
 int convertRecordings(const ConversionOptions& options, const Conversion& conversion) {
   const RobotDescription arm = describeRobot(options.robot);
   const std::vector<InputAndOutput> plan = planOutputs(options.inputs, options.output, options.force);
+  refuseToDestroy(plan, {options.robot.urdf, conversion.also_read}, conversion.also_written);
   if (!options.force) refuseSidecarsThatAreThere(plan);
   std::vector<LoadedDemonstration> recordings(plan.size());
   std::vector<ConversionReport> reports(plan.size());
@@ -92,20 +93,22 @@ int convertRecordings(const ConversionOptions& options, const Conversion& conver
     }
     noteOrigin(plan[i].input, arm, describeStep(conversion.step, arm, options), recordings[i].demonstration.metadata);
   });
-  ordered_json report;
-  if (conversion.conclude) conversion.conclude(report);
   makeDirectories(plan);
-  int exit_code = kDone;
-  ordered_json list = ordered_json::array();
+  if (conversion.open) conversion.open();
   for (std::size_t i = 0; i < plan.size(); ++i) {
-    const std::string output = plan[i].output.string();
-    const Demonstration& demonstration = recordings[i].demonstration;
-    const Eigen::Index rows = demonstration.values.rows();
     if (words[i]) {
       writePlainTable(plan[i].output, {recordings[i], *words[i]}, options.force);
     } else {
-      writeDemonstration(plan[i].output, demonstration, options.force);
+      writeDemonstration(plan[i].output, recordings[i].demonstration, options.force);
     }
+  }
+  ordered_json report;
+  int exit_code = kDone;
+  if (conversion.conclude && conversion.conclude(report)) exit_code = kFindings;
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const std::string output = plan[i].output.string();
+    const Eigen::Index rows = recordings[i].demonstration.values.rows();
     if (reports[i].has_findings) exit_code = kFindings;
     ordered_json object = {
         {"file", plan[i].input.string()}, {"output", output}, {"rows", rows}, {"notes", recordings[i].notes}};

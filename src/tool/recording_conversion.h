@@ -39,8 +39,13 @@ struct Conversion {
   std::function<std::optional<int>(const RobotDescription&, const std::vector<LoadedDemonstration>&)> prepare;
   /// Works on the recording, may add to its notes, and throws ConfigurationError, which gets the file's name in front.
   std::function<ConversionReport(const RobotDescription&, LoadedDemonstration&)> convert;
-  /// Once, when all are converted and before any is written; may add to the JSON object beside `recordings`.
-  std::function<void(nlohmann::ordered_json&)> conclude;
+  std::string also_read;     // a file beside the recordings and the URDF; empty: none
+  std::string also_written;  // a file beside the outputs; empty: none
+  /// Once, when all are converted and before any is written: opens that file, or throws.
+  std::function<void()> open;
+  /// Once, when all are written: finishes that file. May add to the JSON object beside `recordings`, and says whether
+  /// it has findings.
+  std::function<bool(nlohmann::ordered_json&)> conclude;
 };
 
 /// Converts all inputs, in parallel, and writes only when all have succeeded. Returns the exit code.

@@ -7,6 +7,7 @@
 
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
+#include "src/tool/number_option.h"
 #include "src/tool/verbs.h"
 
 namespace demo_logger {
@@ -29,15 +30,6 @@ TimeSpan toSpan(const std::string& text) {
     throw refuse();
   }
   return span;
-}
-
-/// The model's file in front of what is wrong with it.
-CalibratedArm calibrateBy(const std::string& file, const RobotDescription& arm, const ModelCalibration& calibration) {
-  try {
-    return calibrate(arm, calibration);
-  } catch (const ModelError& error) {
-    throw FileError(file + ": " + error.what());
-  }
 }
 
 std::string partsOf(const FitResult& result, std::size_t recordings) {
@@ -72,11 +64,10 @@ void addTorqueFitOptions(CLI::App& verb, TorqueFitOptions& options) {
                 "fit mass, centre and inertia of every body, not those of a payload alone; takes a long motion of all "
                 "joints, far and fast")
       ->needs("--fit");
-  verb.add_option("--model-error", options.model_error,
-                  "how far the fitted model may be off where no hand is, in parts of what a joint usually bears")
-      ->capture_default_str()
-      ->check(CLI::Range(1e-4, 1.0))
-      ->needs("--fit");
+  CLI::Option* const model_error =
+      verb.add_option("--model-error", options.model_error,
+                      "how far the fitted model may be off where no hand is, in parts of what a joint usually bears");
+  requireNumber(*model_error->capture_default_str()->needs("--fit"), {"", 1e-4, 1.0});
 }
 
 std::string stepOf(const TorqueFitOptions& options) {
@@ -98,8 +89,7 @@ TorqueModel::TorqueModel(TorqueFitOptions options, bool force, bool json)
 
 std::optional<int> TorqueModel::prepare(const RobotDescription& arm, const std::vector<LoadedDemonstration>& recordings,
                                         FitOptions fit) {
-  if (!options_.model.empty()) fit.start = readModelCalibration(options_.model);
-  arm_ = calibrateBy(options_.model, arm, fit.start);
+  arm_ = calibrate(arm, std::filesystem::path(options_.model));
   if (options_.fit.empty()) return std::nullopt;
 
   if (!force_ && std::filesystem::exists(options_.fit)) {
@@ -109,6 +99,7 @@ std::optional<int> TorqueModel::prepare(const RobotDescription& arm, const std::
     throw ConfigurationError("--hand-free says when in one recording, but there are " +
                              std::to_string(recordings.size()) + "; fit to one of them");
   }
+  if (!options_.model.empty()) fit.start = readModelCalibration(options_.model);
   fit.hand_free = hand_free_;
   fit.friction = options_.friction;
   fit.bodies = options_.bodies;
@@ -125,13 +116,19 @@ std::optional<int> TorqueModel::prepare(const RobotDescription& arm, const std::
     }
     return kFindings;
   }
-  arm_ = calibrateBy(options_.fit, arm, result_->calibration);
+  arm_ = calibrate(arm, result_->calibration);
   return std::nullopt;
 }
 
-void TorqueModel::conclude(ordered_json& report) const {
+void TorqueModel::open() {
   if (!result_) return;
-  writeModelCalibration(options_.fit, result_->calibration, force_);
+  file_ = std::make_unique<AtomicFile>(options_.fit, force_);
+  file_->write(textOf(result_->calibration));
+}
+
+bool TorqueModel::conclude(ordered_json& report) {
+  if (!result_) return false;
+  file_->commit();
   ordered_json parts = ordered_json::array();
   for (const FitResult::Part& part : result_->hand_free) {
     parts.push_back({{"recording", part.recording}, {"from", part.span.from}, {"to", part.span.to}});
@@ -142,8 +139,10 @@ void TorqueModel::conclude(ordered_json& report) const {
                    {"hand_free", parts},
                    {"residual_start", result_->residual_start},
                    {"residual", result_->residual},
-                   {"findings", result_->findings}};
+                   {"findings", result_->findings},
+                   {"doubts", result_->doubts}};
   if (!json_) say(*result_, recordings_);
+  return !result_->doubts.empty();
 }
 
 void TorqueModel::say(const FitResult& result, std::size_t recordings) const {
@@ -156,6 +155,7 @@ void TorqueModel::say(const FitResult& result, std::size_t recordings) const {
               << ")";
   }
   std::cout << " N m or N\n";
+  for (const std::string& doubt : result.doubts) std::cout << "  " << doubt << '\n';
 }
 
 }  // namespace demo_logger

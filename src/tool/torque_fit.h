@@ -1,11 +1,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "demo_logger/formats/atomic_file.h"
 #include "demo_logger/formats/demonstration_file.h"
 #include "demo_logger/pipelines/fit_model.h"
 #include "demo_logger/pipelines/model_calibration.h"
@@ -38,8 +40,10 @@ class TorqueModel {
   std::optional<int> prepare(const RobotDescription& arm, const std::vector<LoadedDemonstration>& recordings,
                              FitOptions fit);
   const CalibratedArm& arm() const { return *arm_; }
-  /// Writes what was fitted, and says it.
-  void conclude(nlohmann::ordered_json& report) const;
+  /// Opens the file for what was fitted, which gets its name only by conclude(). Throws FileError.
+  void open();
+  /// Finishes that file, and says what was fitted. Returns whether that is in doubt.
+  bool conclude(nlohmann::ordered_json& report);
 
  private:
   void say(const FitResult& result, std::size_t recordings) const;
@@ -50,6 +54,7 @@ class TorqueModel {
   std::vector<TimeSpan> hand_free_;
   std::optional<CalibratedArm> arm_;
   std::optional<FitResult> result_;
+  std::unique_ptr<AtomicFile> file_;
   std::size_t recordings_ = 0;
 };
 

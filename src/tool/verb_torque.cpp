@@ -79,7 +79,10 @@ int recoverTorques(const Options& options) {
   conversion.convert = [&](const RobotDescription&, LoadedDemonstration& recording) {
     return addTorques(model.arm(), recording, options);
   };
-  conversion.conclude = [&](nlohmann::ordered_json& report) { model.conclude(report); };
+  conversion.also_read = options.fit.model;
+  conversion.also_written = options.fit.fit;
+  conversion.open = [&] { model.open(); };
+  conversion.conclude = [&](nlohmann::ordered_json& report) { return model.conclude(report); };
   return convertRecordings(options.conversion, conversion);
 }
 
@@ -99,7 +102,7 @@ void addTorqueVerb(CLI::App& tool, int& exit_code) {
       ->check(CLI::IsMember({"motor", "link"}));
   requireNumber(*verb->add_option("--control-period", options->control_period,
                                   "[s] of the arm's controller, for held efforts (default: as the recording says)"),
-                positive("s"));
+                {"s", 0.0, 1.0, /*lower_included=*/false});
   verb->add_flag("--gravity-compensated", options->gravity_compensated,
                  "the arm was compensated for gravity alone; efforts are not needed");
   addTorqueFitOptions(*verb, options->fit);

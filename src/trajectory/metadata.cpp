@@ -4,6 +4,11 @@
 #include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
+namespace {
+
+constexpr double kLongestControlPeriod = 1.0;  // [s]
+
+}  // namespace
 
 void validate(const EffortMetadata& effort) {
   if (effort.side != "motor" && effort.side != "link") {
@@ -16,6 +21,11 @@ void validate(const EffortMetadata& effort) {
     throw ConfigurationError(
         "effort: control_period is " + print(effort.control_period) +
         " s, expected that of the arm's controller, since its efforts are held: a held effort acts half of it late.");
+  }
+  if (effort.timing == "held" && effort.control_period > kLongestControlPeriod) {
+    throw ConfigurationError("effort: control_period is " + print(effort.control_period) +
+                             " s, expected that of the arm's controller, above 0 and at most " +
+                             print(kLongestControlPeriod) + " s.");
   }
 }
 

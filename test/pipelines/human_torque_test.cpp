@@ -303,12 +303,30 @@ TEST(HumanTorqueTest, ARecordingOfOneRowHasNoTorqueAndSaysWhy) {
   EXPECT_TRUE(std::isnan(value(demonstration, 0, "tau_h_joint_1")));
 }
 
+TEST(HumanTorqueTest, HeldEffortsAreNotExtrapolated) {
+  Teaching noisy;
+  noisy.torque_noise = 0.1;
+  Demonstration demonstration = record(noisy);
+  demonstration.values.col(7).segment(1000, 900).setConstant(std::numeric_limits<double>::quiet_NaN());
+  demonstration.metadata.effort.control_period = 1.0;  // far too long: half a second before each stamp
+  addHumanTorque(frictionless(), demonstration);
+  double largest = 0.0;
+  for (Index k = 0; k < demonstration.values.rows(); ++k) {
+    const double torque = value(demonstration, k, "tau_h_joint_1");
+    if (!std::isnan(torque)) largest = std::max(largest, std::abs(torque));
+  }
+  EXPECT_LT(largest, 50.0) << "wrong, but no larger than the torques that there are";
+}
+
 TEST(HumanTorqueTest, SaysWhatItCannotUse) {
   Demonstration demonstration = record({});
   demonstration.metadata.effort.control_period = 0.0;
   EXPECT_EQ(messageOf(frictionless(), demonstration),
             "effort: control_period is 0 s, expected that of the arm's controller, since its efforts are held: a held "
             "effort acts half of it late.");
+  demonstration.metadata.effort.control_period = 7.0;
+  EXPECT_EQ(messageOf(frictionless(), demonstration),
+            "effort: control_period is 7 s, expected that of the arm's controller, above 0 and at most 1 s.");
   demonstration.metadata.effort.timing = "sometimes";
   EXPECT_EQ(messageOf(frictionless(), demonstration), "effort: timing is \"sometimes\", expected instant or held.");
   demonstration.metadata.effort.side = "both";

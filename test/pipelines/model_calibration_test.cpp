@@ -1,6 +1,7 @@
 #include "demo_logger/pipelines/model_calibration.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <Eigen/Eigenvalues>
 #include <cstdlib>
@@ -132,6 +133,18 @@ TEST(ModelCalibrationTest, WhatIsWrongInAFileIsSaidWithFileLineKeyAndValue) {
   EXPECT_EQ(file.refusalOf("just text"), "model.yaml: holds \"just text\", expected a mapping of keys to values");
   EXPECT_EQ(file.refusalOf("tip: [\n").rfind("model.yaml:2: is not YAML: ", 0), 0U);
   EXPECT_THROW(readModelCalibration(file.path().string() + ".none"), FileError);
+}
+
+TEST(ModelCalibrationTest, WhatIsNoSingleModelOfItsFormatIsRefused) {
+  const ModelFile file;
+  EXPECT_EQ(file.refusalOf("side: link\n"), "model.yaml:1: format is missing, expected it here.");
+  EXPECT_EQ(file.refusalOf("format: demo_logger_model/1\n---\nside: link\n"),
+            "model.yaml:3: a second YAML document begins, expected one only");
+  EXPECT_EQ(file.refusalOf(std::string(1000001, '#')), "model.yaml: is larger than 1 MB, expected a model (YAML)");
+  EXPECT_THROW(readModelCalibration("/dev/zero"), FileError) << "which never ends";
+  const std::filesystem::path pipe = file.path().parent_path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(readModelCalibration(pipe), FileError) << "which nobody writes to";
 }
 
 TEST(ModelCalibrationTest, APayloadsWeightAddsUpWhateverItsSign) {

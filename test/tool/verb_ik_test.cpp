@@ -187,7 +187,7 @@ TEST(VerbIkTest, RefusesInOneSentenceAndWritesNothing) {
       {"torque poses.csv -o joints.csv --fit model.yaml --model-error 2" + kTwoLink,
        "--model-error is 2, expected a finite number from 0.0001 to 1\n"},
       {"torque poses.csv -o joints.csv --control-period=-0.001" + kTwoLink,
-       "--control-period is -0.001 s, expected a finite number above 0\n"},
+       "--control-period is -0.001 s, expected a finite number above 0, at most 1\n"},
       {"import poses.bag -o many --max-wait 11", "--max-wait is 11 s, expected a finite number from 0 to 10\n"},
       {"import poses.bag -o many --split-gap=-1", "--split-gap is -1 s, expected a finite number of at least 0\n"},
       {"ik poses.csv -o joints.csv --urdf none.urdf", "none.urdf: no such file, expected a robot description (URDF)\n"},

@@ -72,7 +72,7 @@ TEST(VerbTorqueTest, WithoutEffortsNothingIsWrittenUnlessGravityWasCompensated) 
 TEST(VerbTorqueTest, AModelFileTakesItsBiasOffTheEfforts) {
   const ToolRun run;
   run.write("held.csv", upright(50));
-  run.write("model.yaml", "side: link\njoints:\n  joint_1: {torque_bias: 0.5}\n");
+  run.write("model.yaml", "format: demo_logger_model/1\nside: link\njoints:\n  joint_1: {torque_bias: 0.5}\n");
   const auto outcome = run("torque held.csv -o taught.csv --side link --effort instant --model model.yaml" + kTwoLink);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NEAR(std::stod(run.cells("taught.csv")[20][9]), -1.0, 1e-9);
@@ -84,7 +84,7 @@ TEST(VerbTorqueTest, AModelFileTakesItsBiasOffTheEfforts) {
             std::string::npos)
       << other_side.out;
 
-  run.write("other.yaml", "joints:\n  joint_9: {torque_bias: 0.5}\n");
+  run.write("other.yaml", "format: demo_logger_model/1\njoints:\n  joint_9: {torque_bias: 0.5}\n");
   const auto refused = run("torque held.csv -o none.csv --side link --effort instant --model other.yaml" + kTwoLink);
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_EQ(refused.err.rfind("other.yaml: no joint 'joint_9' to drive in the arm of robot", 0), 0U) << refused.err;
@@ -149,6 +149,71 @@ TEST(VerbTorqueTest, WhereAHandIsAllTheTimeNothingIsWrittenAndTheReasonSaid) {
   EXPECT_EQ(run("torque held.csv -o out.csv --fit arm.yaml --hand-free 4:2" + how).err,
             "--hand-free is \"4:2\", expected FROM:TO in seconds since the first row, FROM before TO\n");
   EXPECT_EQ(run("torque held.csv -o out.csv --hand-free 2:4" + how).exit_code, 2) << "only with --fit";
+}
+
+TEST(VerbTorqueTest, AModelThatWouldDestroyWhatIsReadOrMadeIsRefusedEvenWithForce) {
+  const ToolRun run;
+  run.write("g.csv", swinging(10.0, 0.4, 0.0));
+  const std::string how = " --force --side link --effort instant" + kTwoLink;
+  ASSERT_EQ(run("torque g.csv -o z.csv" + how).exit_code, 0);
+  run.write("g.json", run.read("z.json"));
+  run.write("m.yaml", "format: demo_logger_model/1\n");
+  const std::vector<std::string> names = {"g.csv", "g.json", "z.csv", "z.json", "m.yaml"};
+  std::vector<std::string> before;
+  for (const std::string& name : names) before.push_back(run.read(name));
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"-o z.csv --fit z.csv", "z.csv: would overwrite the output z.csv"},
+      {"-o z.csv --fit z.json", "z.json: would overwrite the sidecar of the output z.csv"},
+      {"-o z.csv --fit g.csv", "g.csv: would overwrite the input g.csv"},
+      {"-o z.csv --fit ./none/../g.json", "./none/../g.json: would overwrite the sidecar of the input g.csv"},
+      {"-o z.csv --fit m.yaml --model m.yaml", "m.yaml: would overwrite the input m.yaml"},
+      {"-o m.yaml --model m.yaml", "m.yaml: would overwrite the input m.yaml"},
+      {"-o g.csv", "g.csv: would overwrite the input g.csv"},
+      {"-o g.txt", "g.json: would overwrite the sidecar of the input g.csv"},
+  };
+  for (const auto& [arguments, sentence] : cases) {
+    const auto outcome = run("torque g.csv " + arguments + how);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_EQ(outcome.err, sentence + ", which --force does not allow either; choose another name\n") << arguments;
+    for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(run.read(names[i]), before[i]) << arguments;
+  }
+  EXPECT_FALSE(run.exists("g.txt"));
+}
+
+TEST(VerbTorqueTest, AnOutputThatCannotBeWrittenLeavesNoModelAndAModelThatCannotNoOutput) {
+  const ToolRun run;
+  run.write("g.csv", swinging(10.0, 0.4, 0.0));
+  const std::string how = " --side link --effort instant" + kTwoLink;
+  EXPECT_EQ(run("torque g.csv -o /proc/x.csv --fit y.yaml" + how).exit_code, 2);
+  EXPECT_FALSE(run.exists("y.yaml"));
+  EXPECT_EQ(run("torque g.csv -o x.csv --fit /proc/y.yaml" + how).exit_code, 2);
+  EXPECT_FALSE(run.exists("x.csv"));
+  EXPECT_EQ(run("torque g.csv -o new/x.csv --fit new/y.yaml" + how).exit_code, 0) << "in a folder that is made";
+  EXPECT_TRUE(run.exists("new/x.csv") && run.exists("new/y.yaml"));
+}
+
+TEST(VerbTorqueTest, GivenPartsInWhichAHandPushesAreDoubted) {
+  const ToolRun run;
+  run.write("held.csv", swinging(10.0, 0.0, 8.0));
+  const auto outcome =
+      run("torque held.csv -o out.csv --fit arm.yaml --hand-free 0:10 --side link --effort instant" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_NE(outcome.out.find("  joint_1: what is left in the given parts is "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("; is the hand really away there?\n"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(run.exists("arm.yaml")) << "a finding, not a refusal";
+}
+
+TEST(VerbTorqueTest, AControlPeriodThatNoArmHasIsRefused) {
+  const ToolRun run;
+  run.write("g.csv", upright(50));
+  EXPECT_EQ(run("torque g.csv -o x.csv --effort held --control-period 7" + kTwoLink).exit_code, 2);
+  run.write("g.json", R"({"format": "demo_logger/1", "effort": {"timing": "held", "control_period": 1e9}})");
+  const auto outcome = run("torque g.csv -o x.csv" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find(" s, expected that of the arm's controller, above 0 and at most 1 s.\n"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_FALSE(run.exists("x.csv"));
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ struct FitResult {
   std::size_t rows = 0;                // that tell of at least one joint
   std::vector<double> residual_start;  // per joint, root mean square there [N m or N], as the start has it
   std::vector<double> residual;        // ditto, as fitted
+  std::vector<std::string> doubts;     // a sentence for each joint that given parts without a hand do not agree with
   std::vector<std::string> findings;   // a sentence for each quantity: what it is, or why it is not known
 };
 

@@ -51,8 +51,12 @@ struct ModelCalibration {
 };
 
 /// Throws FileError naming the file, the line, the key, its value and what was expected: no such file, not YAML, an
-/// unknown or repeated key, a wrong type, a value out of range.
+/// unknown, missing or repeated key, a wrong type, a value out of range; also what is no regular file, larger than
+/// 1 MB, or holds more than one YAML document.
 ModelCalibration readModelCalibration(const std::filesystem::path& path);
+
+/// As it stands in a file.
+std::string textOf(const ModelCalibration& calibration);
 
 /// Whole or not at all. Throws FileError if it cannot be written, or is there and `overwrite` is false.
 void writeModelCalibration(const std::filesystem::path& path, const ModelCalibration& calibration,

@@ -32,7 +32,7 @@ struct EffortMetadata {
 };
 
 /// Throws ConfigurationError where it cannot be told from it when and on which side a torque acted: an unknown side or
-/// timing, or held efforts without a control period.
+/// timing, or held efforts without a control period, or with one longer than 1 s.
 void validate(const EffortMetadata& effort);
 
 /// The map from the device to the command: output = gain * input + offset.
