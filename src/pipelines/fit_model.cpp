@@ -28,7 +28,7 @@ constexpr double kStepGain =
 
 EffortMetadata commonMeaning(const std::vector<const Demonstration*>& recordings, const FitOptions& options) {
   if (recordings.empty()) throw ConfigurationError("there is no recording to fit a model to");
-  const EffortMetadata meaning = options.effort.value_or(recordings.front()->metadata.effort);
+  EffortMetadata meaning = options.effort.value_or(recordings.front()->metadata.effort);
   for (const Demonstration* recording : recordings) {
     const EffortMetadata& other = recording->metadata.effort;
     if (options.effort || (other.side == meaning.side && other.includes_gravity == meaning.includes_gravity)) continue;

@@ -154,7 +154,7 @@ class Search {
     std::vector<bool> chosen(windows_.size(), false);
     for (std::size_t w = seed; w < seed + kSeedWindows; ++w) chosen[w] = true;
     for (int round = 0; round < kMostRounds; ++round) {
-      const std::vector<bool> next = explained(solve(chosen));
+      std::vector<bool> next = explained(solve(chosen));
       if (next == chosen || said(next) == 0) return next;
       chosen = next;
     }

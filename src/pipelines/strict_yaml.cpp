@@ -30,14 +30,14 @@ std::string shown(const YAML::Node& node) {
   if (node.IsMap()) return "a mapping";
   if (node.IsSequence()) return "a list of " + std::to_string(node.size());
   if (!node.IsScalar()) return "nothing";
-  const std::string text = node.Scalar();
+  const std::string& text = node.Scalar();
   return "\"" + (text.size() > kLongestQuote ? text.substr(0, kLongestQuote) + "…" : text) + "\"";
 }
 
 }  // namespace
 
-StrictYaml::StrictYaml(std::string file, std::string prefix, YAML::Node node)
-    : file_(std::move(file)), prefix_(std::move(prefix)), node_(std::move(node)) {}
+StrictYaml::StrictYaml(std::string file, std::string prefix, const YAML::Node& node)
+    : file_(std::move(file)), prefix_(std::move(prefix)), node_(node) {}
 
 StrictYaml StrictYaml::read(const std::string& path) {
   std::error_code status;
@@ -116,7 +116,7 @@ std::string StrictYaml::text(const std::string& key) const {
 }
 
 std::string StrictYaml::word(const std::string& key, const std::vector<std::string>& allowed) const {
-  const std::string found = text(key);
+  std::string found = text(key);
   if (std::find(allowed.begin(), allowed.end(), found) == allowed.end()) refuse(required(key), key, listed(allowed));
   return found;
 }

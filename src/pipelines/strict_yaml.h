@@ -33,7 +33,7 @@ class StrictYaml {
   std::vector<double> numbers(const std::string& key, std::size_t count, const Range& range) const;
 
  private:
-  StrictYaml(std::string file, std::string prefix, YAML::Node node);
+  StrictYaml(std::string file, std::string prefix, const YAML::Node& node);
   /// Refuses a key that is not there.
   YAML::Node required(const std::string& key) const;
   [[noreturn]] void refuse(const YAML::Node& node, const std::string& key, const std::string& expected) const;

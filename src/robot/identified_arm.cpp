@@ -52,7 +52,8 @@ RobotDescription withBodies(const RobotDescription& description, const std::map<
                        "'; the nearest names are " + nearNames(name, other.jointNames()));
     }
     const std::string impossible = body.mass == 0.0 ? "no mass" : impossibility(body);
-    if (!impossible.empty()) throw ModelError("the body that joint '" + name + "' moves has " + impossible);
+    if (!impossible.empty())
+      throw ModelError(std::string("the body that joint '").append(name) + "' moves has " + impossible);
     joint->body = body;
   }
   return other;

@@ -105,6 +105,7 @@ std::optional<int> TorqueModel::prepare(const RobotDescription& arm, const std::
   fit.bodies = options_.bodies;
   fit.model_error = options_.model_error;
   std::vector<const Demonstration*> demonstrations;
+  demonstrations.reserve(recordings.size());
   for (const LoadedDemonstration& recording : recordings) demonstrations.push_back(&recording.demonstration);
   recordings_ = recordings.size();
   result_ = fitModel(arm, demonstrations, fit);
