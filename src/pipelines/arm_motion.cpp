@@ -5,6 +5,7 @@
 
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/motion_smoother.h"
+#include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 #include "effort_series.h"
 #include "joint_columns.h"
@@ -17,7 +18,7 @@ RecordedJoints readJoints(const RobotDescription& robot, const Demonstration& de
   const std::vector<std::string> names = robot.jointNames();
   const Index rows = demonstration.values.rows();
   const auto count = static_cast<Index>(names.size());
-  RecordedJoints joints{Eigen::MatrixXd(rows, count), Eigen::MatrixXd(rows, count), {}};
+  RecordedJoints joints{Eigen::MatrixXd(rows, count), Eigen::MatrixXd(rows, count), {}, false};
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto position = findJointColumn(demonstration.columns, kPosition, names[i]);
     if (!position) {
@@ -27,13 +28,19 @@ RecordedJoints readJoints(const RobotDescription& robot, const Demonstration& de
     const auto column = static_cast<Index>(i);
     joints.position.col(column) = demonstration.values.col(static_cast<Index>(*position));
     const auto effort = findJointColumn(demonstration.columns, kEffort, names[i]);
+    joints.effort.col(column).setConstant(kNaN);
     if (effort) joints.effort.col(column) = demonstration.values.col(static_cast<Index>(*effort));
-    if (joints.without_effort.empty() && (!effort || joints.effort.col(column).array().isNaN().all())) {
-      joints.without_effort = names[i];
-    }
+    if (joints.effort.col(column).array().isNaN().all()) joints.without_effort.push_back(names[i]);
+    joints.has_effort_columns = joints.has_effort_columns || effort.has_value();
   }
-  if (!joints.without_effort.empty()) joints.effort.resize(0, 0);
+  if (joints.without_effort.size() == names.size()) joints.effort.resize(0, 0);
   return joints;
+}
+
+std::string whyNoEfforts(const RecordedJoints& joints, const std::string& joint) {
+  const std::string column = "column `" + jointColumnName(kEffort, joint) + "`";
+  return (joints.has_effort_columns ? column + " holds no efforts" : "no " + column + " with efforts") + " of joint '" +
+         joint + "'";
 }
 
 std::vector<RowRange> rangesWithoutSilence(const std::vector<double>& time, const Eigen::MatrixXd& position,
@@ -60,8 +67,10 @@ std::vector<RowRange> rangesWithoutSilence(const std::vector<double>& time, cons
                     std::to_string(ranges.size() - 1 + too_short) + " times; nothing is said across that");
   }
   if (too_short > 0) {
-    notes.push_back(std::to_string(too_short) + " parts between silences have fewer than " +
-                    std::to_string(kFewestSamples) + " rows, too few to tell an acceleration: they stay NaN");
+    notes.push_back(std::to_string(too_short) +
+                    (too_short == 1 ? " part between silences has" : " parts between silences have") + " fewer than " +
+                    std::to_string(kFewestSamples) +
+                    " rows, too few to tell an acceleration: " + (too_short == 1 ? "it stays NaN" : "they stay NaN"));
   }
   return ranges;
 }

@@ -13,12 +13,16 @@ namespace demo_logger {
 /// What a recording holds of an arm, rows x joints; NaN where it is missing.
 struct RecordedJoints {
   Eigen::MatrixXd position;
-  Eigen::MatrixXd effort;      // empty: no efforts of at least one joint
-  std::string without_effort;  // the first such joint
+  Eigen::MatrixXd effort;                   // empty: no efforts of any joint
+  std::vector<std::string> without_effort;  // the joints that have none
+  bool has_effort_columns = false;          // though they may hold nothing
 };
 
 /// Throws ConfigurationError naming the first joint without a column of positions.
 RecordedJoints readJoints(const RobotDescription& robot, const Demonstration& demonstration);
+
+/// "no column `tau_elbow` with efforts of joint 'elbow'", or that there is one which holds none.
+std::string whyNoEfforts(const RecordedJoints& joints, const std::string& joint);
 
 /// Rows [first, last) without a silence of the joints.
 struct RowRange {

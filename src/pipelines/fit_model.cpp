@@ -46,10 +46,9 @@ TorqueEquations equationsOf(const RobotDescription& robot, const std::vector<con
     const EffortMetadata meaning = options.effort.value_or(recordings[r]->metadata.effort);
     validate(meaning);
     const RecordedJoints joints = readJoints(robot, *recordings[r]);
-    if (joints.effort.size() == 0) {
-      throw ConfigurationError("no column `" + jointColumnName(kEffort, joints.without_effort) +
-                               "` with efforts of joint '" + joints.without_effort +
-                               "', which a model would have to explain");
+    if (!joints.without_effort.empty()) {
+      throw ConfigurationError(whyNoEfforts(joints, joints.without_effort.front()) +
+                               ", which a model would have to explain");
     }
     std::vector<std::string> notes;  // addHumanTorque says them
     for (const RowRange& range : rangesWithoutSilence(recordings[r]->time, joints.position, options.max_gap, notes)) {

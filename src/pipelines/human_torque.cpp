@@ -3,11 +3,13 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "arm_motion.h"
 #include "demo_logger/robot/robot_model.h"
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/not_a_number.h"
+#include "demo_logger/trajectory/print.h"
 #include "joint_columns.h"
 
 namespace demo_logger {
@@ -21,18 +23,51 @@ constexpr double kSingular = 1e-6;  // of the largest singular value, below whic
 /// The efforts that count: none if the arm was compensated for gravity alone.
 void decideOnEfforts(const HumanTorqueOptions& options, RecordedJoints& joints, std::vector<std::string>& notes) {
   if (joints.effort.size() > 0) {
-    if (!options.gravity_compensated) return;
+    if (!options.gravity_compensated) {
+      for (const std::string& joint : joints.without_effort) {
+        notes.push_back("joint '" + joint + "' has no efforts: its torque is NaN, and so is the force at the tool");
+      }
+      return;
+    }
     notes.push_back("the arm counts as compensated for gravity, so its recorded efforts are not used");
     joints.effort.resize(0, 0);
     return;
   }
   if (!options.gravity_compensated) {
-    throw ConfigurationError("no column `" + jointColumnName(kEffort, joints.without_effort) +
-                             "` with efforts of joint '" + joints.without_effort +
-                             "', without which the human's torque cannot be told from the motor's; if the arm was "
+    throw ConfigurationError(whyNoEfforts(joints, joints.without_effort.front()) +
+                             ", without which the human's torque cannot be told from the motor's; if the arm was "
                              "compensated for gravity alone, say so (--gravity-compensated)");
   }
   notes.push_back("no efforts were recorded: the motors count as compensating gravity, and nothing else");
+}
+
+/// The model holds a joint beside the chain still, whatever it did.
+void noteMovingJointsBesideTheChain(const RobotDescription& robot, const Demonstration& demonstration,
+                                    std::vector<std::string>& notes) {
+  constexpr double kMoves = 0.01;  // [rad or m] beyond what an encoder's noise does
+  const std::string prefix = kPosition.prefix;
+  const std::string source = std::string("joint_states/") + kPosition.word + "/";
+  for (std::size_t c = 0; c < demonstration.columns.size(); ++c) {
+    const Column& column = demonstration.columns[c];
+    std::string joint;
+    if (column.source.rfind(source, 0) == 0) joint = column.source.substr(source.size());
+    if (column.source.empty() && column.name.rfind(prefix, 0) == 0) joint = column.name.substr(prefix.size());
+    const auto& names = robot.jointNames();
+    const bool is_of_chain = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return name == joint || jointColumnName(kPosition, name) == column.name;
+    });
+    if (joint.empty() || is_of_chain) continue;
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (const double position : demonstration.values.col(static_cast<Index>(c))) {
+      if (std::isnan(position)) continue;
+      least = std::min(least, position);
+      most = std::max(most, position);
+    }
+    if (!(most - least > kMoves)) continue;
+    notes.push_back("joint '" + joint + "' moves by " + print(most - least, 3) + " rad or m, but is not between " +
+                    robot.base + " and " + robot.tip + ": the model holds it still (--at says where)");
+  }
 }
 
 class Recovery {
@@ -171,6 +206,7 @@ HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demon
   validate(meaning);
   RecordedJoints joints = readJoints(robot, demonstration);
   decideOnEfforts(options, joints, summary.notes);
+  noteMovingJointsBesideTheChain(robot, demonstration, summary.notes);
   const bool has_efforts = joints.effort.size() > 0;
   if (has_efforts && meaning.side != arm.drives_side && (arm.drives_side == "link" || !arm.torque_bias.isZero(0.0))) {
     summary.notes.push_back("the model's biases and friction are those of efforts measured at the " + arm.drives_side +
@@ -189,13 +225,12 @@ HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demon
   demonstration.metadata.effort = meaning;
   summary.encoder_noise = recovery.encoderNoise();
   demonstration.metadata.parameters["encoder_noise"] = summary.encoder_noise;
-  summary.largest_torque.assign(static_cast<std::size_t>(n), 0.0);
+  summary.largest_torque.assign(static_cast<std::size_t>(n), kNaN);
   for (Index k = 0; k < recovery.torque.rows(); ++k) {
-    if (!recovery.torque.row(k).allFinite()) continue;
-    ++summary.rows;
+    if (recovery.torque.row(k).allFinite()) ++summary.rows;
     for (Index i = 0; i < n; ++i) {
       double& largest = summary.largest_torque[static_cast<std::size_t>(i)];
-      largest = std::max(largest, std::abs(recovery.torque(k, i)));
+      largest = std::fmax(largest, std::abs(recovery.torque(k, i)));  // passes over NaN
     }
   }
   return summary;

@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -42,9 +42,32 @@ std::string stepOf(const Options& options) {
   return step + stepOf(options.fit) + " --max-gap " + print(options.max_gap);
 }
 
+/// ", at most 1.5 at joint_1", or nothing if no torque is known.
+std::string largestTorque(const RobotDescription& arm, const std::vector<double>& torques) {
+  std::optional<std::size_t> largest;
+  for (std::size_t i = 0; i < torques.size(); ++i) {
+    if (!std::isnan(torques[i]) && (!largest || torques[i] > torques[*largest])) largest = i;
+  }
+  return largest ? ", at most " + print(torques[*largest]) + " at " + arm.jointNames()[*largest] : "";
+}
+
+/// Where nothing says what the efforts mean, what they are taken for.
+void noteAssumedMeaning(const Options& options, const EffortMetadata& meaning, LoadedDemonstration& recording) {
+  const Metadata& recorded = recording.demonstration.metadata;
+  const EffortMetadata& effort = recorded.effort;
+  const EffortMetadata unsaid;
+  const bool is_said = !recorded.software.empty() || !recorded.robot.joints.empty() || effort.side != unsaid.side ||
+                       effort.timing != unsaid.timing || effort.control_period != unsaid.control_period;
+  const bool is_told = !options.side.empty() && !options.effort.empty();
+  if (is_said || is_told || options.gravity_compensated) return;
+  recording.notes.push_back("nothing recorded says what the efforts mean: they count as " + meaning.timing +
+                            " at the " + meaning.side + " side; --side, --effort and --control-period say otherwise");
+}
+
 ConversionReport addTorques(const CalibratedArm& arm, LoadedDemonstration& recording, const Options& options) {
   HumanTorqueOptions torque;
   torque.effort = meaningOf(recording.demonstration.metadata.effort, options);
+  noteAssumedMeaning(options, *torque.effort, recording);
   torque.gravity_compensated = options.gravity_compensated;
   torque.max_gap = options.max_gap;
   const HumanTorqueSummary summary = addHumanTorque(arm, recording.demonstration, torque);
@@ -53,10 +76,8 @@ ConversionReport addTorques(const CalibratedArm& arm, LoadedDemonstration& recor
   ConversionReport report;
   const std::size_t rows = recording.demonstration.time.size();
   report.has_findings = summary.rows < rows;
-  const auto largest = std::max_element(summary.largest_torque.begin(), summary.largest_torque.end());
-  report.sentence = "with the human's torque in " + std::to_string(summary.rows) + " of them, at most " +
-                    print(*largest) + " at " +
-                    arm.robot.jointNames()[static_cast<std::size_t>(largest - summary.largest_torque.begin())];
+  report.sentence = "with the human's torque in " + (summary.rows == 0 ? "none" : std::to_string(summary.rows)) +
+                    " of them" + largestTorque(arm.robot, summary.largest_torque);
   report.figures = [summary](nlohmann::ordered_json& object) {
     object["rows_with_torque"] = summary.rows;
     object["encoder_noise"] = summary.encoder_noise;

@@ -244,7 +244,7 @@ TEST(HumanTorqueTest, WithoutEffortsGravityCompensationMustBeDeclared) {
   Demonstration demonstration = record({});
   demonstration.values.middleCols(7, 7).setConstant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(messageOf(frictionless(), demonstration),
-            "no column `tau_joint_1` with efforts of joint 'joint_1', without which the human's torque cannot be told "
+            "column `tau_joint_1` holds no efforts of joint 'joint_1', without which the human's torque cannot be told "
             "from the motor's; if the arm was compensated for gravity alone, say so (--gravity-compensated)");
   HumanTorqueOptions options;
   options.gravity_compensated = true;
@@ -278,6 +278,35 @@ TEST(HumanTorqueTest, WhereAnEffortIsMissingThatJointsTorqueIsNotKnownAndNoOther
   EXPECT_NEAR(value(demonstration, 1021, "tau_h_joint_3"), handTorqueAt(1.021)[2], 1e-3);
 }
 
+TEST(HumanTorqueTest, AJointWithoutEffortsCostsNoOtherItsTorque) {
+  Demonstration demonstration = record({});
+  demonstration.values.col(7 + 2).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
+  EXPECT_EQ(summary.notes.front(),
+            "joint 'joint_3' has no efforts: its torque is NaN, and so is the force at the tool");
+  EXPECT_EQ(summary.rows, 0U) << "with all joints";
+  EXPECT_TRUE(std::isnan(summary.largest_torque[2]));
+  EXPECT_NEAR(summary.largest_torque[0], 10.0, 0.1);
+  EXPECT_TRUE(std::isnan(value(demonstration, 2000, "tau_h_joint_3")));
+  EXPECT_NEAR(value(demonstration, 2000, "tau_h_joint_2"), handTorqueAt(2.0)[1], 1e-3);
+}
+
+TEST(HumanTorqueTest, AMovingJointBesideTheChainIsNamed) {
+  Demonstration demonstration = record({});
+  for (const char* name : {"q_finger", "q_locked"}) {
+    demonstration.columns.push_back({name, "", Role::state, Interpolation::linear, ""});
+  }
+  demonstration.values.conservativeResize(Eigen::NoChange, 16);
+  demonstration.values.rightCols(2).setConstant(0.5);
+  demonstration.values(100, 14) = 0.75;
+  demonstration.values(100, 15) = 0.5001;
+  const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
+  ASSERT_EQ(summary.notes.size(), 1U) << "an encoder's noise is no motion";
+  EXPECT_EQ(summary.notes.front(),
+            "joint 'finger' moves by 0.250 rad or m, but is not between base_link and tool_tip: the model holds it "
+            "still (--at says where)");
+}
+
 TEST(HumanTorqueTest, RecordedVelocitiesAreNotAskedFor) {
   Demonstration without = record({});
   Demonstration with = without;
@@ -299,7 +328,7 @@ TEST(HumanTorqueTest, ARecordingOfOneRowHasNoTorqueAndSaysWhy) {
   const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
   EXPECT_EQ(summary.rows, 0U);
   EXPECT_EQ(summary.notes.front(),
-            "1 parts between silences have fewer than 8 rows, too few to tell an acceleration: they stay NaN");
+            "1 part between silences has fewer than 8 rows, too few to tell an acceleration: it stays NaN");
   EXPECT_TRUE(std::isnan(value(demonstration, 0, "tau_h_joint_1")));
 }
 

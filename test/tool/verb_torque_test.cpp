@@ -50,7 +50,15 @@ TEST(VerbTorqueTest, RowsWithoutATorqueAreAFinding) {
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   const auto recording = nlohmann::json::parse(outcome.out)["recordings"][0];
   EXPECT_EQ(recording["rows_with_torque"], 0);
-  EXPECT_NE(recording["notes"].dump().find("1 parts between silences have fewer than 8 rows"), std::string::npos)
+  EXPECT_TRUE(recording["largest_torque"][0].is_null()) << recording;
+  EXPECT_NE(recording["notes"].dump().find("they count as instant at the motor side; --side, --effort and "
+                                           "--control-period say otherwise"),
+            std::string::npos)
+      << recording;
+  const auto said = run("torque short.csv -o said.csv --side link --effort instant" + kTwoLink).out;
+  EXPECT_NE(said.find("said.csv: 3 rows with the human's torque in none of them\n"), std::string::npos) << said;
+  EXPECT_EQ(said.find("nothing recorded says"), std::string::npos) << said;
+  EXPECT_NE(recording["notes"].dump().find("1 part between silences has fewer than 8 rows"), std::string::npos)
       << recording;
 }
 

@@ -20,7 +20,7 @@ struct HumanTorqueOptions {
 struct HumanTorqueSummary {
   std::size_t rows = 0;                // with a torque for every joint
   std::vector<double> encoder_noise;   // per joint, standard deviation of a measured position [rad or m]
-  std::vector<double> largest_torque;  // per joint [N m or N]
+  std::vector<double> largest_torque;  // per joint [N m or N]; NaN: none known
   std::vector<std::string> notes;      // what had to be assumed or left out, in sentences
 };
 
@@ -40,7 +40,7 @@ struct HumanTorqueSummary {
 /// where F says little. NaN where nothing can be said: within silences longer than max_gap, where fewer than
 /// kFewestSamples rows are left between them, or where an effort is missing.
 ///
-/// Throws ConfigurationError naming the first joint without a column of positions, efforts that are not there at all
+/// Throws ConfigurationError naming the first joint without a column of positions, efforts that no joint has
 /// (unless gravity_compensated), an unknown side or timing, or held efforts without their control period; ModelError
 /// for an arm without inertia.
 /// With a calibrated arm, its torque bias is taken off the efforts, and efforts measured at the links show friction and
