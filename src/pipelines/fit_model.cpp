@@ -7,6 +7,7 @@
 
 #include "arm_motion.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 #include "fit_findings.h"
 #include "fit_problem.h"
@@ -115,7 +116,7 @@ class Fit {
         squares += std::pow(problem_.regression().residual(k, i, theta), 2);
         count += 1.0;
       });
-      result.push_back(count > 0.0 ? std::sqrt(squares / count) : std::numeric_limits<double>::quiet_NaN());
+      result.push_back(count > 0.0 ? std::sqrt(squares / count) : kNaN);
     }
     return result;
   }

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
+
+#include "demo_logger/trajectory/not_a_number.h"
 
 namespace demo_logger {
 namespace {
@@ -123,7 +124,7 @@ class Search {
 
   double usualResidual(const Window& window, Index joint, const Eigen::VectorXd& theta) const {
     const JointSums& sums = window.sums[static_cast<std::size_t>(joint)];
-    if (!says(window, sums)) return std::numeric_limits<double>::quiet_NaN();
+    if (!says(window, sums)) return kNaN;
     return std::sqrt(sums.squares(regression_, joint, theta) / sums.count);
   }
 

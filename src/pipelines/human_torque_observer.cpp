@@ -77,9 +77,10 @@ bool HumanTorqueObserver::update(Nanoseconds stamp, const Eigen::VectorXd& q, co
   return observer_.update(dt, momentum_, forces_, mean_motor_torque_, torque);
 }
 
-/// τ_c at this instant.
+/// τ_c at this instant; false where it is not known.
 bool HumanTorqueObserver::takeMotorTorque(const Eigen::VectorXd& q, const Eigen::VectorXd& effort) {
-  if (!model_.gravity(q, gravity_)) return false;
+  const bool adds_gravity = !configuration_.effort.includes_gravity || configuration_.gravity_compensated;
+  if (adds_gravity && !model_.gravity(q, gravity_)) return false;
   for (Eigen::Index i = 0; i < effort.size(); ++i) {
     const bool unsaid = std::isnan(effort[i]) && configuration_.gravity_compensated;
     motor_torque_[i] =

@@ -5,7 +5,7 @@
 #include "body_inertia.h"
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
-#include "near_names.h"
+#include "joint_named.h"
 
 namespace demo_logger {
 namespace {
@@ -45,16 +45,11 @@ RobotDescription withPayload(const RobotDescription& description, const BodyIner
 RobotDescription withBodies(const RobotDescription& description, const std::map<std::string, BodyInertia>& bodies) {
   RobotDescription other = description;
   for (const auto& [name, body] : bodies) {
-    const auto joint = std::find_if(other.joints.begin(), other.joints.end(),
-                                    [&name = name](const ArmJoint& candidate) { return candidate.name == name; });
-    if (joint == other.joints.end()) {
-      throw ModelError("no joint '" + name + "' to move a body in the arm of robot '" + other.name +
-                       "'; the nearest names are " + nearNames(name, other.jointNames()));
-    }
+    ArmJoint& joint = jointNamed(other, name, "to move a body");
     const std::string impossible = body.mass == 0.0 ? "no mass" : impossibility(body);
     if (!impossible.empty())
       throw ModelError(std::string("the body that joint '").append(name) + "' moves has " + impossible);
-    joint->body = body;
+    joint.body = body;
   }
   return other;
 }

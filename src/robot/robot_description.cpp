@@ -13,8 +13,8 @@
 #include "body_inertia.h"
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
+#include "joint_named.h"
 #include "locked_joints.h"
-#include "near_names.h"
 #include "sha256.h"
 #include "urdf_reader.h"
 #include "urdf_tree.h"
@@ -233,12 +233,7 @@ RobotDescription describeRobotFile(const std::string& path, const DescriptionOpt
 RobotDescription withDrives(const RobotDescription& description, const std::map<std::string, JointDrive>& drives) {
   RobotDescription driven = description;
   for (const auto& [name, drive] : drives) {
-    const auto joint = std::find_if(driven.joints.begin(), driven.joints.end(),
-                                    [&name = name](const ArmJoint& candidate) { return candidate.name == name; });
-    if (joint == driven.joints.end()) {
-      throw ModelError("no joint '" + name + "' to drive in the arm of robot '" + driven.name +
-                       "'; the nearest names are " + nearNames(name, driven.jointNames()));
-    }
+    ArmJoint& joint = jointNamed(driven, name, "to drive");
     const auto set = [&name = name](const char* what, const std::optional<double>& given, double& value) {
       if (!given) return;
       if (!std::isfinite(*given) || *given < 0.0) {
@@ -248,10 +243,10 @@ RobotDescription withDrives(const RobotDescription& description, const std::map<
       }
       value = *given;
     };
-    set("motor inertia", drive.motor_inertia, joint->motor_inertia);
-    set("damping", drive.damping, joint->damping);
-    set("friction", drive.friction, joint->friction);
-    set("friction velocity", drive.friction_velocity, joint->friction_velocity);
+    set("motor inertia", drive.motor_inertia, joint.motor_inertia);
+    set("damping", drive.damping, joint.damping);
+    set("friction", drive.friction, joint.friction);
+    set("friction velocity", drive.friction_velocity, joint.friction_velocity);
   }
   return driven;
 }

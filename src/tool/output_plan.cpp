@@ -50,14 +50,15 @@ std::vector<InputAndOutput> planOutputs(const std::vector<std::string>& inputs, 
       throw FileError(input.string() + " and " + other->second.string() + " would both become " +
                       plan.back().output.string() + "; rename one of them, or run them one by one");
     }
-    std::error_code error;
-    if (!force &&
-        std::filesystem::symlink_status(plan.back().output, error).type() != std::filesystem::file_type::not_found) {
-      throw FileError(plan.back().output.string() +
-                      ": exists already and is not overwritten; choose another name, or add --force");
-    }
+    if (!force) refuseToOverwrite(plan.back().output);
   }
   return plan;
+}
+
+void refuseToOverwrite(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::symlink_status(file, error).type() == std::filesystem::file_type::not_found) return;
+  throw FileError(file.string() + ": exists already and is not overwritten; choose another name, or add --force");
 }
 
 void refuseToDestroy(const std::vector<InputAndOutput>& plan, const std::vector<std::string>& also_read,

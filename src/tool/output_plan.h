@@ -20,6 +20,9 @@ struct InputAndOutput {
 std::vector<InputAndOutput> planOutputs(const std::vector<std::string>& inputs, const std::filesystem::path& output,
                                         bool force);
 
+/// Throws FileError if something has that name already, be it a link to nothing.
+void refuseToOverwrite(const std::filesystem::path& file);
+
 /// Throws FileError if anything that is written is among what is read, or `also_written` among the outputs: that would
 /// destroy what was recorded or just made, so --force does not allow it. Recordings count with their sidecars;
 /// `also_read` and `also_written` may be empty.

@@ -41,15 +41,15 @@ PlainTable readPlainTable(const std::filesystem::path& file) {
   return table;
 }
 
-void writePlainTable(const std::filesystem::path& file, const PlainTable& table, bool overwrite) {
-  const Demonstration& numbers = table.numbers.demonstration;
+void writePlainTable(const std::filesystem::path& file, const Demonstration& numbers,
+                     const std::vector<std::string>& status, bool overwrite) {
   std::string text;
   for (const Column& column : numbers.columns) text += (text.empty() ? "" : ",") + column.name;
   text += '\n';
   for (Eigen::Index row = 0; row < numbers.values.rows(); ++row) {
     for (Eigen::Index column = 0; column < numbers.values.cols(); ++column) {
       if (column > 0) text += ',';
-      const std::string& word = table.status[static_cast<std::size_t>(row)];
+      const std::string& word = status[static_cast<std::size_t>(row)];
       if (numbers.columns[static_cast<std::size_t>(column)].name == "status" && !word.empty()) {
         text += word;
       } else {

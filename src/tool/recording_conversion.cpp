@@ -47,13 +47,7 @@ LoadedDemonstration readInput(const std::filesystem::path& file, bool plain_tabl
 
 /// Two files each, so their places are judged before any is written.
 void refuseSidecarsThatAreThere(const std::vector<InputAndOutput>& plan) {
-  for (const InputAndOutput& entry : plan) {
-    const std::filesystem::path sidecar = sidecarPath(entry.output);
-    if (std::filesystem::exists(sidecar)) {
-      throw FileError(sidecar.string() +
-                      ": exists already and is not overwritten; choose another name, or add --force");
-    }
-  }
+  for (const InputAndOutput& entry : plan) refuseToOverwrite(sidecarPath(entry.output));
 }
 
 }  // namespace
@@ -97,7 +91,7 @@ int convertRecordings(const ConversionOptions& options, const Conversion& conver
   if (conversion.open) conversion.open();
   for (std::size_t i = 0; i < plan.size(); ++i) {
     if (words[i]) {
-      writePlainTable(plan[i].output, {recordings[i], *words[i]}, options.force);
+      writePlainTable(plan[i].output, recordings[i].demonstration, *words[i], options.force);
     } else {
       writeDemonstration(plan[i].output, recordings[i].demonstration, options.force);
     }

@@ -1,4 +1,5 @@
 #include "src/tool/torque_fit.h"
+#include "src/tool/output_plan.h"
 
 #include <cmath>
 #include <filesystem>
@@ -92,9 +93,7 @@ std::optional<int> TorqueModel::prepare(const RobotDescription& arm, const std::
   arm_ = calibrate(arm, std::filesystem::path(options_.model));
   if (options_.fit.empty()) return std::nullopt;
 
-  if (!force_ && std::filesystem::exists(options_.fit)) {
-    throw FileError(options_.fit + ": exists already and is not overwritten; choose another name, or add --force");
-  }
+  if (!force_) refuseToOverwrite(options_.fit);
   if (!options_.hand_free.empty() && recordings.size() > 1) {
     throw ConfigurationError("--hand-free says when in one recording, but there are " +
                              std::to_string(recordings.size()) + "; fit to one of them");
