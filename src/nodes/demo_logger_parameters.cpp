@@ -275,9 +275,6 @@ DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std
   const HumanTorqueRequest human_torque = parseHumanTorque(parameters, metadata.effort);
   result.robot = parseRobot(parameters, robot_description, human_torque);
   synchroniser.joints = parameters.texts("joints", {});
-  if (result.robot) {
-    recordRobot(*result.robot, recorder);
-  }
   if (human_torque.observer) {
     result.human_torque = {*human_torque.observer, calibrate(*result.robot, std::filesystem::path(human_torque.model)),
                            human_torque.model};
@@ -289,6 +286,7 @@ DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std
   parameters.rejectUnknown();
   try {  // their sentences begin with the field, which is the parameter's name
     validate(synchroniser);
+    if (result.robot) recordRobot(*result.robot, recorder);
     if (result.human_torque) validate(result.human_torque->observer.effort);
   } catch (const ConfigurationError& error) {
     throw ConfigurationError(parameters.fullName(error.what()));

@@ -63,8 +63,9 @@ std::vector<RowRange> rangesWithoutSilence(const std::vector<double>& time, cons
   }
   close();
   if (ranges.size() > 1) {
+    const std::size_t silences = ranges.size() - 1 + too_short;
     notes.push_back("the joints were silent for more than " + print(max_gap) + " s, " +
-                    std::to_string(ranges.size() - 1 + too_short) + " times; nothing is said across that");
+                    (silences == 1 ? "once" : std::to_string(silences) + " times") + "; nothing is said across that");
   }
   if (too_short > 0) {
     notes.push_back(std::to_string(too_short) +

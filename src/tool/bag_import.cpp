@@ -31,7 +31,8 @@ RecorderConfiguration makeConfiguration(const BagReader& bag, const ImportPlan& 
   metadata.channel = options.channel;
   metadata.software = kSoftware;
   metadata.provenance.parent = bag.path().filename().string();
-  metadata.provenance.steps = {"import"};
+  metadata.provenance.steps = {kImportStep + stepOf(options.effort)};
+  metadata.effort = corrected(metadata.effort, options.effort);
   metadata.parameters = {{"joint_states", plan.joint_states},
                          {"max_wait", options.max_wait},
                          {"max_gap", configuration.synchroniser.max_gap},

@@ -9,6 +9,7 @@
 
 #include "demo_logger/recording/recorder.h"
 #include "demo_logger/robot/robot_description.h"
+#include "src/tool/effort_options.h"
 #include "src/tool/import_plan.h"
 
 namespace demo_logger {
@@ -18,6 +19,7 @@ struct ImportOptions {
   double max_wait = 0.1;   // [s]
   double split_gap = 0.0;  // [s] 0: one episode
   std::string channel = "unknown";
+  EffortOptions effort;
   std::optional<RobotDescription> robot;  // for the tool pose
   std::function<void(std::uint64_t done, std::uint64_t all)> progress = [](std::uint64_t, std::uint64_t) {};
 };

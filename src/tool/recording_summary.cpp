@@ -116,7 +116,8 @@ std::string toText(const RecordingSummary& summary) {
          << "): " << describeCounts(stream) << '\n';
   }
   for (const Fault& fault : metadata.faults) {
-    text << "  fault: " << fault.what << " (" << fault.count << " times)\n";
+    text << "  fault: " << fault.what << (fault.count == 1 ? "" : " (" + std::to_string(fault.count) + " times)")
+         << '\n';
   }
   text << "  columns: time" << joinColumns(summary.columns) << '\n'
        << "  files: " << summary.file.filename().string() << " (" << print(static_cast<double>(summary.bytes) / 1e6, 2)

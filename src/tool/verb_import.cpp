@@ -25,6 +25,7 @@ struct Options {
   double max_wait = 0.1;
   double split_gap = 0.0;
   std::string channel = "unknown";
+  EffortOptions effort;
   std::string urdf;
   std::string base;
   std::string tip;
@@ -37,6 +38,8 @@ ImportOptions makeImportOptions(const Options& options) {
   result.max_wait = options.max_wait;
   result.split_gap = options.split_gap;
   result.channel = options.channel;
+  result.effort = options.effort;
+  validate(corrected(EffortMetadata(), options.effort));
   if (!options.urdf.empty()) {
     DescriptionOptions description;
     description.base = options.base;
@@ -92,7 +95,9 @@ void print(const ordered_json& bag) {
   }
 }
 
-void import(const Options& options) {
+/// Returns the exit code.
+int import(const Options& options) {
+  int exit_code = kDone;
   ImportOptions import_options = makeImportOptions(options);
   ordered_json bags = ordered_json::array();
   for (const auto& [bag, plan] : openBags(options)) {
@@ -104,6 +109,7 @@ void import(const Options& options) {
                           {"episodes", ordered_json::array()}};
     for (const std::filesystem::path& file : importBag(bag, plan, import_options)) {
       entry["episodes"].push_back(describe(file));
+      if (!entry["episodes"].back()["faults"].empty()) exit_code = kFindings;
     }
     if (!options.json) {
       print(entry);
@@ -113,6 +119,7 @@ void import(const Options& options) {
   if (options.json) {
     std::cout << ordered_json{{"bags", bags}}.dump(2) << '\n';
   }
+  return exit_code;
 }
 
 }  // namespace
@@ -144,15 +151,15 @@ void addImportVerb(CLI::App& tool, int& exit_code) {
   verb->add_option("--channel", options->channel, "over which it was demonstrated")
       ->capture_default_str()
       ->check(CLI::IsMember({"teleoperation", "kinesthetic", "vr", "unknown"}));
+  addEffortOptions(*verb, options->effort, "instant, at the motor side");
   verb->add_option("--urdf", options->urdf, "robot description, for the tool pose");
   verb->add_option("--base", options->base, "link in whose frame the tool pose is given (default: the root)");
   verb->add_option("--tip", options->tip, "link of the tool (default: the only leaf)");
   verb->add_flag("--json", options->json, "print one JSON object instead");
-  verb->footer("Example: demo_tool import teleoperation.bag -o demos --stream wrench=/ft_sensor:linear:0.004");
-  verb->callback([options, &exit_code] {
-    import(*options);
-    exit_code = kDone;
-  });
+  verb->footer(
+      "Example: demo_tool import teleoperation.bag -o demos --stream wrench=/ft_sensor:linear:0.004\n"
+      "Exit code: 1 if an episode has faults, as `demo_tool info` shows them.");
+  verb->callback([options, &exit_code] { exit_code = import(*options); });
 }
 
 }  // namespace demo_logger

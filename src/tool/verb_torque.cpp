@@ -6,6 +6,7 @@
 
 #include "demo_logger/pipelines/human_torque.h"
 #include "demo_logger/trajectory/print.h"
+#include "src/tool/effort_options.h"
 #include "src/tool/number_option.h"
 #include "src/tool/recording_conversion.h"
 #include "src/tool/torque_fit.h"
@@ -16,28 +17,14 @@ namespace {
 
 struct Options {
   ConversionOptions conversion;
-  std::string effort;
-  std::string side;
-  std::optional<double> control_period;
+  EffortOptions effort;
   bool gravity_compensated = false;
   TorqueFitOptions fit;
   double max_gap = HumanTorqueOptions().max_gap;
 };
 
-/// What the recording says of its efforts, corrected by the command line.
-EffortMetadata meaningOf(const EffortMetadata& recorded, const Options& options) {
-  EffortMetadata meaning = recorded;
-  if (!options.effort.empty()) meaning.timing = options.effort;
-  if (!options.side.empty()) meaning.side = options.side;
-  if (options.control_period) meaning.control_period = *options.control_period;
-  return meaning;
-}
-
 std::string stepOf(const Options& options) {
-  std::string step = "torque";
-  if (!options.effort.empty()) step += " --effort " + options.effort;
-  if (!options.side.empty()) step += " --side " + options.side;
-  if (options.control_period) step += " --control-period " + print(*options.control_period);
+  std::string step = "torque" + stepOf(options.effort);
   if (options.gravity_compensated) step += " --gravity-compensated";
   return step + stepOf(options.fit) + " --max-gap " + print(options.max_gap);
 }
@@ -53,20 +40,15 @@ std::string largestTorque(const RobotDescription& arm, const std::vector<double>
 
 /// Where nothing says what the efforts mean, what they are taken for.
 void noteAssumedMeaning(const Options& options, const EffortMetadata& meaning, LoadedDemonstration& recording) {
-  const Metadata& recorded = recording.demonstration.metadata;
-  const EffortMetadata& effort = recorded.effort;
-  const EffortMetadata unsaid;
-  const bool is_said = !recorded.software.empty() || !recorded.robot.joints.empty() || effort.side != unsaid.side ||
-                       effort.timing != unsaid.timing || effort.control_period != unsaid.control_period;
-  const bool is_told = !options.side.empty() && !options.effort.empty();
-  if (is_said || is_told || options.gravity_compensated) return;
+  const bool is_told = !options.effort.side.empty() && !options.effort.timing.empty();
+  if (is_told || options.gravity_compensated || saysWhatEffortsMean(recording.demonstration.metadata)) return;
   recording.notes.push_back("nothing recorded says what the efforts mean: they count as " + meaning.timing +
                             " at the " + meaning.side + " side; --side, --effort and --control-period say otherwise");
 }
 
 ConversionReport addTorques(const CalibratedArm& arm, LoadedDemonstration& recording, const Options& options) {
   HumanTorqueOptions torque;
-  torque.effort = meaningOf(recording.demonstration.metadata.effort, options);
+  torque.effort = corrected(recording.demonstration.metadata.effort, options.effort);
   noteAssumedMeaning(options, *torque.effort, recording);
   torque.gravity_compensated = options.gravity_compensated;
   torque.max_gap = options.max_gap;
@@ -93,8 +75,9 @@ int recoverTorques(const Options& options) {
   conversion.prepare = [&](const RobotDescription& arm, const std::vector<LoadedDemonstration>& recordings) {
     FitOptions fit;
     fit.max_gap = options.max_gap;
-    const bool is_told = !options.effort.empty() || !options.side.empty() || options.control_period;
-    if (is_told) fit.effort = meaningOf(recordings.front().demonstration.metadata.effort, options);
+    if (options.effort.any()) {
+      fit.effort = corrected(recordings.front().demonstration.metadata.effort, options.effort);
+    }
     return model.prepare(arm, recordings, fit);
   };
   conversion.convert = [&](const RobotDescription&, LoadedDemonstration& recording) {
@@ -114,16 +97,7 @@ void addTorqueVerb(CLI::App& tool, int& exit_code) {
   CLI::App* verb = tool.add_subcommand("torque", "recordings get the torque that the human's hand exerted");
   addConversionOptions(*verb, options->conversion,
                        "recordings (*.csv) with columns q_<joint> and tau_<joint> of each joint, or directories");
-  verb->add_option("--effort", options->effort,
-                   "instant: efforts were measured at the stamp; held: they are commands, in force until the next tick "
-                   "(default: as the recording says)")
-      ->check(CLI::IsMember({"instant", "held"}));
-  verb->add_option("--side", options->side,
-                   "of the gears that efforts were measured on (default: as the recording says)")
-      ->check(CLI::IsMember({"motor", "link"}));
-  requireNumber(*verb->add_option("--control-period", options->control_period,
-                                  "[s] of the arm's controller, for held efforts (default: as the recording says)"),
-                {"s", 0.0, 1.0, /*lower_included=*/false});
+  addEffortOptions(*verb, options->effort, "as the recording says");
   verb->add_flag("--gravity-compensated", options->gravity_compensated,
                  "the arm was compensated for gravity alone; efforts are not needed");
   addTorqueFitOptions(*verb, options->fit);
@@ -138,7 +112,9 @@ void addTorqueVerb(CLI::App& tool, int& exit_code) {
       "say\n"
       "where no hand is: demo_tool torque demos/demo_000001.csv -o taught.csv --fit arm.yaml --hand-free 0:6 --urdf …\n"
       "Recorded velocities are not needed: they follow from positions. Nothing is concluded across silences, nor from\n"
-      "fewer than 8 rows: NaN. Missing efforts are refused, unless the arm was --gravity-compensated.\n"
+      "fewer than 8 rows: NaN. A joint without efforts stays NaN; if none has any, that is refused, unless the arm "
+      "was\n"
+      "--gravity-compensated.\n"
       "Exit code: 1 if a row got no torque, or a model could not be fitted (then nothing is written).");
   verb->callback([options, &exit_code] { exit_code = recoverTorques(*options); });
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -244,6 +246,32 @@ TEST(DemoLoggerParametersTest, WhatHumanTorqueCannotDoWithoutIsNamed) {
                 twoLinkUrdf()),
             "/demo_logger/effort: control_period is 0 s, expected that of the arm's controller, since its efforts are "
             "held: a held effort acts half of it late.");
+}
+
+TEST(DemoLoggerParametersTest, AnArmOfWhichAJointWouldNotBeRecordedIsRefused) {
+  const std::string expected =
+      "/demo_logger/joints: 'joint_2' is not among them, which the arm from base_link to tool_tip has; add it, or "
+      "leave "
+      "out the list for all of the arm's.";
+  EXPECT_EQ(refusal(
+                [](XmlRpcValue& values) {
+                  values["human_torque"] = true;
+                  values["joints"][0] = "joint_1";
+                },
+                twoLinkUrdf()),
+            expected);
+  EXPECT_EQ(refusal(
+                [](XmlRpcValue& values) {
+                  values["tip"] = "tool_tip";
+                  values["joints"][0] = "gripper";
+                  values["joints"][1] = "joint_1";
+                },
+                twoLinkUrdf()),
+            expected);
+  XmlRpcValue others_too;
+  others_too["tip"] = "tool_tip";
+  for (int i = 0; i < 3; ++i) others_too["joints"][i] = std::array{"joint_2", "gripper", "joint_1"}.at(i);
+  EXPECT_EQ(parse(others_too, twoLinkUrdf()).recorder.synchroniser.joints.size(), 3U);
 }
 
 TEST(DemoLoggerParametersTest, AStreamThatTwoShareOrALinkThatIsMissingIsASentence) {

@@ -262,7 +262,7 @@ TEST(HumanTorqueTest, NothingIsSaidAcrossASilence) {
   for (Index k = 1000; k < 1300; ++k) demonstration.values.row(k).setConstant(std::numeric_limits<double>::quiet_NaN());
   demonstration.values.row(500).head(7).setConstant(std::numeric_limits<double>::quiet_NaN());
   const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
-  EXPECT_EQ(summary.notes.front(), "the joints were silent for more than 0.1 s, 1 times; nothing is said across that");
+  EXPECT_EQ(summary.notes.front(), "the joints were silent for more than 0.1 s, once; nothing is said across that");
   EXPECT_TRUE(std::isnan(value(demonstration, 1100, "tau_h_joint_1")));
   EXPECT_NEAR(value(demonstration, 500, "tau_h_joint_1"), handTorqueAt(0.5)[0], 0.01) << "a single row is bridged";
 }

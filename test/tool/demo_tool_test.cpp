@@ -2,57 +2,40 @@
 #include <rosbag/bag.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/String.h>
-#include <sys/wait.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "test/tool/temporary_directory.h"
+#include "test/tool/tool_run.h"
 
 // demo_tool as a user's shell sees it: exit codes, what goes to which stream, nothing half-written.
 
 namespace demo_logger {
 namespace {
 
-struct Outcome {
-  int exit_code = -1;
-  std::string out;
-  std::string err;
-};
+using Outcome = ToolRun::Outcome;
+
+sensor_msgs::JointState elbowAt(int i, double position) {
+  sensor_msgs::JointState message;
+  message.header.stamp = ros::Time(100, 10'000'000U * static_cast<unsigned>(i));
+  message.name = {"elbow"};
+  message.position = {position};
+  return message;
+}
 
 class DemoToolTest : public testing::Test {
  protected:
   DemoToolTest() {
     rosbag::Bag bag(path("motion.bag"), rosbag::bagmode::Write);
-    for (int i = 0; i < 100; ++i) {
-      sensor_msgs::JointState message;
-      message.header.stamp = ros::Time(100, 10'000'000U * static_cast<unsigned>(i));
-      message.name = {"elbow"};
-      message.position = {0.01 * i};
-      bag.write("/joint_states", message.header.stamp, message);
-    }
+    for (int i = 0; i < 100; ++i) bag.write("/joint_states", elbowAt(i, 0.01 * i).header.stamp, elbowAt(i, 0.01 * i));
   }
 
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+  std::string path(const std::string& name) const { return run.path(name); }
+  std::string read(const std::string& name) const { return run.read(name); }
 
-  std::string read(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(path(name)).rdbuf();
-    return text.str();
-  }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command = std::string(DEMO_TOOL) + " " + arguments + " >" + path("out") + " 2>" + path("err");
-    Outcome outcome;
-    outcome.exit_code = WEXITSTATUS(std::system(command.c_str()));
-    outcome.out = read("out");
-    outcome.err = read("err");
-    return outcome;
-  }
-
-  TemporaryDirectory directory_;
+  const ToolRun run;
 };
 
 TEST_F(DemoToolTest, EveryVerbExplainsItselfWithAnExample) {
@@ -95,6 +78,36 @@ TEST_F(DemoToolTest, ImportThenInfoTellsRowsRateAndFiles) {
   EXPECT_NE(info.out.find("100 rows in 0.990 s: 100.0 Hz, largest gap 10.0 ms"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("columns: time q_elbow dq_elbow tau_elbow receipt_delay"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("demo_000001.json"), std::string::npos) << info.out;
+}
+
+TEST_F(DemoToolTest, AnImportTakesWhatTheEffortsMeanFromTheCommandLineForOnlyItKnows) {
+  const std::string import = "import " + path("motion.bag") + " -o ";
+  const Outcome refused = run(import + "held --effort held");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("control_period is 0 s, expected that of the arm's controller"), std::string::npos)
+      << refused.err;
+  EXPECT_FALSE(run.exists("held"));
+
+  ASSERT_EQ(run(import + "held --effort held --side link --control-period 0.002").exit_code, 0);
+  const auto sidecar = nlohmann::json::parse(read("held/demo_000001.json"));
+  EXPECT_EQ(sidecar["effort"]["timing"], "held");
+  EXPECT_EQ(sidecar["effort"]["side"], "link");
+  EXPECT_EQ(sidecar["effort"]["control_period"], 0.002);
+  EXPECT_EQ(sidecar["provenance"]["steps"][0], "import --effort held --side link --control-period 0.002");
+}
+
+TEST_F(DemoToolTest, FaultsOfWhatWasImportedAreAFinding) {
+  {
+    rosbag::Bag bag(path("faulty.bag"), rosbag::bagmode::Write);
+    for (int i = 0; i < 100; ++i) {
+      const double position = i == 50 ? std::nan("") : 0.01 * i;
+      bag.write("/joint_states", elbowAt(i, position).header.stamp, elbowAt(i, position));
+    }
+  }
+  const Outcome imported = run("import " + path("faulty.bag") + " -o " + path("demos"));
+  EXPECT_EQ(imported.exit_code, 1) << imported.err;
+  EXPECT_NE(imported.out.find("not finite"), std::string::npos) << imported.out;
+  EXPECT_TRUE(run.exists("demos/demo_000001.csv"));
 }
 
 TEST_F(DemoToolTest, OneUnreadableRecordingDoesNotKeepTheOthersFromTheirTurn) {
@@ -151,22 +164,22 @@ TEST_F(DemoToolTest, ABagAmongOthersThatIsRefusedLeavesNothingWritten) {
   EXPECT_EQ(outcome.err, path("chat.bag") +
                              ": no joint states (sensor_msgs/JointState) to make rows of; it holds /chat "
                              "(std_msgs/String, 1)\n");
-  EXPECT_FALSE(std::filesystem::exists(directory_ / "demos"));
+  EXPECT_FALSE(run.exists("demos"));
 }
 
 TEST_F(DemoToolTest, WhatIsNotThereIsOneSentence) {
   EXPECT_EQ(run("import " + path("gone.bag") + " -o " + path("demos")).err, path("gone.bag") + ": no such file\n");
   EXPECT_EQ(run("info " + path("gone.csv")).err, path("gone.csv") + ": no such file or directory\n");
   EXPECT_EQ(run("recover " + path("gone")).err, path("gone") + ": no such directory\n");
-  std::filesystem::create_directory(directory_ / "empty");
+  std::filesystem::create_directory(path("empty"));
   const Outcome outcome = run("info " + path("empty"));
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(outcome.err, path("empty") + ": no recording (*.csv) in this directory\n");
 }
 
 TEST_F(DemoToolTest, CheckEndsWithOneWhereItFindsSomethingAndWithZeroWhereNot) {
-  std::ofstream(directory_ / "good.csv") << "time,q_elbow,dq_elbow\n0,0,1\n0.01,0.01,1\n0.02,0.02,1\n0.03,0.03,1\n";
-  std::ofstream(directory_ / "bad.csv") << "time,q_elbow,dq_elbow\n0,0,1\n0.01,0.01,1\n0.02,0.02,1\n2.02,2.02,1\n";
+  run.write("good.csv", "time,q_elbow,dq_elbow\n0,0,1\n0.01,0.01,1\n0.02,0.02,1\n0.03,0.03,1\n");
+  run.write("bad.csv", "time,q_elbow,dq_elbow\n0,0,1\n0.01,0.01,1\n0.02,0.02,1\n2.02,2.02,1\n");
   const Outcome good = run("check " + path("good.csv"));
   EXPECT_EQ(good.exit_code, 0) << good.out;
   EXPECT_EQ(good.out, path("good.csv") + ": note: " + path("good.json") +
@@ -191,9 +204,9 @@ TEST_F(DemoToolTest, TwoStreamsMayBeAskedForAndBagsMayFollowThem) {
 }
 
 TEST_F(DemoToolTest, WhatAKilledRecorderLeftIsFinished) {
-  std::filesystem::create_directory(directory_ / "demos");
-  std::ofstream(directory_ / "demos/demo_000001.csv.part") << "time,q_elbow\n0,1\n0.5,2\n1,";
-  std::ofstream(directory_ / "demos/demo_000001.json.part") << R"({"format": "demo_logger/1", "id": "demo_000001"})";
+  std::filesystem::create_directory(path("demos"));
+  run.write("demos/demo_000001.csv.part", "time,q_elbow\n0,1\n0.5,2\n1,");
+  run.write("demos/demo_000001.json.part", R"({"format": "demo_logger/1", "id": "demo_000001"})");
   const Outcome outcome = run("recover " + path("demos"));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.out,

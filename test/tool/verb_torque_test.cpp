@@ -62,6 +62,20 @@ TEST(VerbTorqueTest, RowsWithoutATorqueAreAFinding) {
       << recording;
 }
 
+TEST(VerbTorqueTest, WhatAnImportWasNotToldOfTheEffortsIsStillNotKnown) {
+  const ToolRun run;
+  const std::string sidecar =
+      R"("format":"demo_logger/1","software":"demo_logger","robot":{"joints":["joint_1","joint_2"]})";
+  const auto isAssumed = [&](const std::string& step) {
+    run.write("bag.csv", upright(20));
+    run.write("bag.json", "{" + sidecar + R"(,"provenance":{"parent":"a.bag","steps":[")" + step + "\"]}}");
+    return run("torque bag.csv -o taught.csv --force" + kTwoLink).out.find("nothing recorded says") !=
+           std::string::npos;
+  };
+  EXPECT_TRUE(isAssumed("import"));
+  EXPECT_FALSE(isAssumed("import --effort instant --side motor"));
+}
+
 TEST(VerbTorqueTest, WithoutEffortsNothingIsWrittenUnlessGravityWasCompensated) {
   const ToolRun run;
   std::string csv = "time,q_joint_1,q_joint_2\n";
