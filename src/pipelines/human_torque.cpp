@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "arm_motion.h"
 #include "demo_logger/robot/robot_model.h"
@@ -11,6 +10,7 @@
 #include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 #include "joint_columns.h"
+#include "joint_notes.h"
 
 namespace demo_logger {
 namespace {
@@ -39,35 +39,6 @@ void decideOnEfforts(const HumanTorqueOptions& options, RecordedJoints& joints, 
                              "compensated for gravity alone, say so (--gravity-compensated)");
   }
   notes.push_back("no efforts were recorded: the motors count as compensating gravity, and nothing else");
-}
-
-/// The model holds a joint beside the chain still, whatever it did.
-void noteMovingJointsBesideTheChain(const RobotDescription& robot, const Demonstration& demonstration,
-                                    std::vector<std::string>& notes) {
-  constexpr double kMoves = 0.01;  // [rad or m] beyond what an encoder's noise does
-  const std::string prefix = kPosition.prefix;
-  const std::string source = std::string("joint_states/") + kPosition.word + "/";
-  for (std::size_t c = 0; c < demonstration.columns.size(); ++c) {
-    const Column& column = demonstration.columns[c];
-    std::string joint;
-    if (column.source.rfind(source, 0) == 0) joint = column.source.substr(source.size());
-    if (column.source.empty() && column.name.rfind(prefix, 0) == 0) joint = column.name.substr(prefix.size());
-    const auto& names = robot.jointNames();
-    const bool is_of_chain = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-      return name == joint || jointColumnName(kPosition, name) == column.name;
-    });
-    if (joint.empty() || is_of_chain) continue;
-    double least = std::numeric_limits<double>::infinity();
-    double most = -least;
-    for (const double position : demonstration.values.col(static_cast<Index>(c))) {
-      if (std::isnan(position)) continue;
-      least = std::min(least, position);
-      most = std::max(most, position);
-    }
-    if (!(most - least > kMoves)) continue;
-    notes.push_back("joint '" + joint + "' moves by " + print(most - least, 3) + " rad or m, but is not between " +
-                    robot.base + " and " + robot.tip + ": the model holds it still (--at says where)");
-  }
 }
 
 class Recovery {
@@ -207,6 +178,7 @@ HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demon
   RecordedJoints joints = readJoints(robot, demonstration);
   decideOnEfforts(options, joints, summary.notes);
   noteMovingJointsBesideTheChain(robot, demonstration, summary.notes);
+  notePositionsBeyondLimits(robot, demonstration.time, joints.position, summary.notes);
   const bool has_efforts = joints.effort.size() > 0;
   if (has_efforts && meaning.side != arm.drives_side && (arm.drives_side == "link" || !arm.torque_bias.isZero(0.0))) {
     summary.notes.push_back("the model's biases and friction are those of efforts measured at the " + arm.drives_side +

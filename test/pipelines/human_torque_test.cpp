@@ -291,6 +291,24 @@ TEST(HumanTorqueTest, AJointWithoutEffortsCostsNoOtherItsTorque) {
   EXPECT_NEAR(value(demonstration, 2000, "tau_h_joint_2"), handTorqueAt(2.0)[1], 1e-3);
 }
 
+TEST(HumanTorqueTest, APositionThatTheArmCannotHaveIsNamed) {
+  RobotDescription arm = frictionless();
+  arm.joints[1].lower = -3.0;
+  arm.joints[1].upper = 3.0;
+  Demonstration demonstration = record({});
+  demonstration.values(1500, 1) = 3.5;  // past its limits by less than a tenth of its range, as software limits are
+  EXPECT_TRUE(addHumanTorque(arm, demonstration).notes.empty());
+  demonstration.values(1000, 1) = 1e6;
+  EXPECT_EQ(
+      addHumanTorque(arm, demonstration).notes,
+      std::vector<std::string>{
+          "joint 'joint_2' is at 1e+06 rad at 1 s, far beyond its limits of -3 to 3 rad: what is said around there "
+          "is worth as much; `demo_tool check` may say more"});
+  demonstration.values(2000, 1) = -60.0;
+  EXPECT_NE(addHumanTorque(arm, demonstration).notes.front().find("at 1 s, the first of 2 such rows, far"),
+            std::string::npos);
+}
+
 TEST(HumanTorqueTest, AMovingJointBesideTheChainIsNamed) {
   Demonstration demonstration = record({});
   for (const char* name : {"q_finger", "q_locked"}) {
