@@ -96,10 +96,8 @@ AtomicFile::AtomicFile(std::filesystem::path path, bool overwrite)
 }
 
 AtomicFile::~AtomicFile() {
-  if (descriptor_ >= 0) {
-    close(descriptor_);
-    unlink(temporary_.c_str());
-  }
+  if (descriptor_ >= 0) close(descriptor_);
+  if (!committed_) unlink(temporary_.c_str());
 }
 
 void AtomicFile::write(std::string_view text) {
@@ -112,15 +110,18 @@ void AtomicFile::write(std::string_view text) {
   }
 }
 
-void AtomicFile::sync() {
+void AtomicFile::finish() {
+  if (descriptor_ < 0) return;
   if (fsync(descriptor_) != 0 && errno != EINVAL) {
     throw FileError(path_.string() + ": cannot be brought to the disk (" + reason(errno) +
                     "); nothing was left behind.");
   }
+  close(descriptor_);
+  descriptor_ = -1;
 }
 
 void AtomicFile::commit() {
-  sync();
+  finish();
   if (overwrite_) {
     if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
       throw FileError(path_.string() + ": cannot be replaced (" + reason(errno) + ").");
@@ -128,9 +129,29 @@ void AtomicFile::commit() {
   } else {
     renameWithoutReplacing(temporary_, path_);
   }
-  close(descriptor_);
-  descriptor_ = -1;
+  committed_ = true;
   syncFolder(folderOf(path_));
+}
+
+AtomicFile& AtomicFiles::add(const std::filesystem::path& path, bool overwrite) {
+  if (!entries_.empty()) entries_.back().file->finish();
+  auto file = std::make_unique<AtomicFile>(path, overwrite);
+  entries_.push_back({path, isThere(path), std::move(file)});
+  return *entries_.back().file;
+}
+
+void AtomicFiles::commit() {
+  if (!entries_.empty()) entries_.back().file->finish();
+  for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+    try {
+      entry->file->commit();
+    } catch (const FileError&) {
+      for (auto named = entries_.begin(); named != entry; ++named) {
+        if (!named->replaces) unlink(named->path.c_str());
+      }
+      throw;
+    }
+  }
 }
 
 void writeFileAtomically(const std::filesystem::path& path, std::string_view content, bool overwrite) {

@@ -152,7 +152,8 @@ LoadedDemonstration readDemonstration(const std::filesystem::path& csv) {
   return loaded;
 }
 
-void writeDemonstration(const std::filesystem::path& csv, const Demonstration& demonstration, bool overwrite) {
+void writeDemonstration(AtomicFiles& files, const std::filesystem::path& csv, const Demonstration& demonstration,
+                        bool overwrite) {
   checkConsistency(csv, demonstration);
   std::vector<std::string> names;
   for (const Column& column : demonstration.columns) {
@@ -164,9 +165,7 @@ void writeDemonstration(const std::filesystem::path& csv, const Demonstration& d
     columns[i].name = portable.names[i];
   }
 
-  AtomicFile data(csv, overwrite);
-  AtomicFile beside(sidecarPath(csv), overwrite);
-  const std::size_t infinities = writeRows(data, demonstration, columns);
+  const std::size_t infinities = writeRows(files.add(csv, overwrite), demonstration, columns);
 
   Metadata metadata = demonstration.metadata;
   metadata.original_names.merge(portable.original_names);
@@ -175,19 +174,13 @@ void writeDemonstration(const std::filesystem::path& csv, const Demonstration& d
   if (infinities > 0) {
     metadata.counters["infinities_written_as_nan"] += infinities;
   }
-  beside.write(sidecarText(metadata, columns));
+  files.add(sidecarPath(csv), overwrite).write(sidecarText(metadata, columns));
+}
 
-  data.sync();
-  beside.sync();
-  data.commit();
-  try {
-    beside.commit();
-  } catch (const FileError&) {
-    if (!overwrite) {
-      std::filesystem::remove(csv);  // ours: it did not exist before
-    }
-    throw;
-  }
+void writeDemonstration(const std::filesystem::path& csv, const Demonstration& demonstration, bool overwrite) {
+  AtomicFiles files;
+  writeDemonstration(files, csv, demonstration, overwrite);
+  files.commit();
 }
 
 }  // namespace demo_logger

@@ -41,8 +41,7 @@ PlainTable readPlainTable(const std::filesystem::path& file) {
   return table;
 }
 
-void writePlainTable(const std::filesystem::path& file, const Demonstration& numbers,
-                     const std::vector<std::string>& status, bool overwrite) {
+std::string textOf(const Demonstration& numbers, const std::vector<std::string>& status) {
   std::string text;
   for (const Column& column : numbers.columns) text += (text.empty() ? "" : ",") + column.name;
   text += '\n';
@@ -58,10 +57,7 @@ void writePlainTable(const std::filesystem::path& file, const Demonstration& num
     }
     text += '\n';
   }
-  AtomicFile output(file, overwrite);
-  output.write(text);
-  output.sync();
-  output.commit();
+  return text;
 }
 
 }  // namespace demo_logger

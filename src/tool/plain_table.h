@@ -21,7 +21,7 @@ bool isPlainTable(const std::filesystem::path& file);
 /// Throws FileError for what CsvReader refuses.
 PlainTable readPlainTable(const std::filesystem::path& file);
 
-void writePlainTable(const std::filesystem::path& file, const Demonstration& numbers,
-                     const std::vector<std::string>& status, bool overwrite);
+/// As it stands in a file.
+std::string textOf(const Demonstration& numbers, const std::vector<std::string>& status);
 
 }  // namespace demo_logger

@@ -88,14 +88,17 @@ int convertRecordings(const ConversionOptions& options, const Conversion& conver
     noteOrigin(plan[i].input, arm, describeStep(conversion.step, arm, options), recordings[i].demonstration.metadata);
   });
   makeDirectories(plan);
-  if (conversion.open) conversion.open();
+  AtomicFiles files;
+  if (conversion.write) conversion.write(files);
   for (std::size_t i = 0; i < plan.size(); ++i) {
+    const Demonstration& demonstration = recordings[i].demonstration;
     if (words[i]) {
-      writePlainTable(plan[i].output, recordings[i].demonstration, *words[i], options.force);
+      files.add(plan[i].output, options.force).write(textOf(demonstration, *words[i]));
     } else {
-      writeDemonstration(plan[i].output, recordings[i].demonstration, options.force);
+      writeDemonstration(files, plan[i].output, demonstration, options.force);
     }
   }
+  files.commit();
   ordered_json report;
   int exit_code = kDone;
   if (conversion.conclude && conversion.conclude(report)) exit_code = kFindings;

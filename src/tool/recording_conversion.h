@@ -39,16 +39,15 @@ struct Conversion {
   std::function<std::optional<int>(const RobotDescription&, const std::vector<LoadedDemonstration>&)> prepare;
   /// Works on the recording, may add to its notes, and throws ConfigurationError, which gets the file's name in front.
   std::function<ConversionReport(const RobotDescription&, LoadedDemonstration&)> convert;
-  std::string also_read;     // a file beside the recordings and the URDF; empty: none
-  std::string also_written;  // a file beside the outputs; empty: none
-  /// Once, when all are converted and before any is written: opens that file, or throws.
-  std::function<void()> open;
-  /// Once, when all are written: finishes that file. May add to the JSON object beside `recordings`, and says whether
-  /// it has findings.
+  std::string also_read;                    // a file beside the recordings and the URDF; empty: none
+  std::string also_written;                 // a file beside the outputs; empty: none
+  std::function<void(AtomicFiles&)> write;  // that file
+  /// Once, when all are written. May add to the JSON object beside `recordings`, and says whether it has findings.
   std::function<bool(nlohmann::ordered_json&)> conclude;
 };
 
-/// Converts all inputs, in parallel, and writes only when all have succeeded. Returns the exit code.
+/// Converts all inputs, in parallel, and writes only when all have succeeded: all outputs, or none. Returns the exit
+/// code.
 int convertRecordings(const ConversionOptions& options, const Conversion& conversion);
 
 }  // namespace demo_logger

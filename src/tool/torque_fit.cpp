@@ -120,15 +120,12 @@ std::optional<int> TorqueModel::prepare(const RobotDescription& arm, const std::
   return std::nullopt;
 }
 
-void TorqueModel::open() {
-  if (!result_) return;
-  file_ = std::make_unique<AtomicFile>(options_.fit, force_);
-  file_->write(textOf(result_->calibration));
+void TorqueModel::write(AtomicFiles& files) const {
+  if (result_) files.add(options_.fit, force_).write(textOf(result_->calibration));
 }
 
-bool TorqueModel::conclude(ordered_json& report) {
+bool TorqueModel::conclude(ordered_json& report) const {
   if (!result_) return false;
-  file_->commit();
   ordered_json parts = ordered_json::array();
   for (const FitResult::Part& part : result_->hand_free) {
     parts.push_back({{"recording", part.recording}, {"from", part.span.from}, {"to", part.span.to}});

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -40,10 +39,10 @@ class TorqueModel {
   std::optional<int> prepare(const RobotDescription& arm, const std::vector<LoadedDemonstration>& recordings,
                              FitOptions fit);
   const CalibratedArm& arm() const { return *arm_; }
-  /// Opens the file for what was fitted, which gets its name only by conclude(). Throws FileError.
-  void open();
-  /// Finishes that file, and says what was fitted. Returns whether that is in doubt.
-  bool conclude(nlohmann::ordered_json& report);
+  /// Adds the file of what was fitted, if anything was. Throws FileError.
+  void write(AtomicFiles& files) const;
+  /// Says what was fitted. Returns whether that is in doubt.
+  bool conclude(nlohmann::ordered_json& report) const;
 
  private:
   void say(const FitResult& result, std::size_t recordings) const;
@@ -54,7 +53,6 @@ class TorqueModel {
   std::vector<TimeSpan> hand_free_;
   std::optional<CalibratedArm> arm_;
   std::optional<FitResult> result_;
-  std::unique_ptr<AtomicFile> file_;
   std::size_t recordings_ = 0;
 };
 

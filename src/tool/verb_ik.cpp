@@ -66,16 +66,11 @@ Result convert(const std::filesystem::path& input, const RobotDescription& arm, 
   return result;
 }
 
-/// All files are complete on the disk before the first gets its name.
 void writeAll(const std::vector<InputAndOutput>& plan, const std::vector<Result>& results, bool force) {
   makeDirectories(plan);
-  std::vector<std::unique_ptr<AtomicFile>> files;
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    files.push_back(std::make_unique<AtomicFile>(plan[i].output, force));
-    files.back()->write(results[i].table.csv);
-    files.back()->sync();
-  }
-  for (const auto& file : files) file->commit();
+  AtomicFiles files;
+  for (std::size_t i = 0; i < plan.size(); ++i) files.add(plan[i].output, force).write(results[i].table.csv);
+  files.commit();
 }
 
 ordered_json toJson(const InputAndOutput& entry, const Result& result) {

@@ -85,7 +85,7 @@ int recoverTorques(const Options& options) {
   };
   conversion.also_read = options.fit.model;
   conversion.also_written = options.fit.fit;
-  conversion.open = [&] { model.open(); };
+  conversion.write = [&](AtomicFiles& files) { model.write(files); };
   conversion.conclude = [&](nlohmann::ordered_json& report) { return model.conclude(report); };
   return convertRecordings(options.conversion, conversion);
 }

@@ -59,6 +59,44 @@ TEST(AtomicFileTest, AFileThatAppearsMeanwhileIsNotReplaced) {
   EXPECT_EQ(folder.entries(), 1U);
 }
 
+TEST(AtomicFileTest, OfSeveralFilesNoneIsThereIfOneCannotBe) {
+  const TemporaryFolder folder;
+  folder.write("b", "old");
+  AtomicFiles files;
+  for (const char* name : {"a", "b", "c"}) files.add(folder.path() / name, /*overwrite=*/name[0] == 'b').write(name);
+  folder.write("c", "first");  // meanwhile
+  EXPECT_THROW(files.commit(), FileError);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "a"));
+  EXPECT_EQ(TemporaryFolder::read(folder.path() / "b"), "b") << "what it replaced is gone";
+  EXPECT_EQ(TemporaryFolder::read(folder.path() / "c"), "first");
+
+  AtomicFiles others;
+  for (const char* name : {"d", "e"}) others.add(folder.path() / name, false).write(name);
+  others.commit();
+  EXPECT_EQ(TemporaryFolder::read(folder.path() / "d"), "d");
+  EXPECT_EQ(TemporaryFolder::read(folder.path() / "e"), "e");
+}
+
+TEST(AtomicFileTest, SeveralFilesMayBeMoreThanAProcessMayHaveOpen) {
+  const TemporaryFolder folder;
+  rlimit usual = {};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &usual), 0);
+  rlimit few = usual;
+  few.rlim_cur = 20;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  std::string message;
+  try {
+    AtomicFiles files;
+    for (int i = 0; i < 100; ++i) files.add(folder.path() / std::to_string(i), false).write("x");
+    files.commit();
+  } catch (const FileError& error) {
+    message = error.what();
+  }
+  setrlimit(RLIMIT_NOFILE, &usual);
+  EXPECT_EQ(message, "");
+  EXPECT_EQ(folder.entries(), 100U);
+}
+
 TEST(AtomicFileTest, AWriteThatFailsIsToldAndLeavesTheOldFile) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.csv", "old");

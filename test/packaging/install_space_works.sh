@@ -41,4 +41,7 @@ timeout --signal=INT 100 roslaunch --port "$port" demo_logger demo.launch output
   >"$home/launch.log" 2>&1 </dev/null &
 launched=$!
 wait $launched || { cat "$home/launch.log"; echo "demo.launch from the install space failed"; exit 1; }
-demo_tool check "$home/demos/demo_000001.csv" || { cat "$home/launch.log"; exit 1; }
+episode=$home/demos/demo_000001.csv
+# 1: a machine so busy that the arm stalled is a finding, and none of the package's faults.
+demo_tool check "$episode" || [ $? -eq 1 ] || { cat "$home/launch.log"; exit 1; }
+demo_tool info "$episode" | grep -q 'outcome success, complete$' || { demo_tool info "$episode"; exit 1; }

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace demo_logger {
 
@@ -19,16 +21,35 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view text);
-  /// Brings everything written so far to the disk, so that commit() can hardly fail.
-  void sync();
-  /// The file now has its name. To be called once.
+  /// Brings everything to the disk and closes: nothing more can be written, and commit() can hardly fail.
+  void finish();
+  /// The file now has its name, finished if it was not. To be called once.
   void commit();
 
  private:
   std::filesystem::path path_;
   std::filesystem::path temporary_;
   bool overwrite_;
-  int descriptor_ = -1;
+  bool committed_ = false;
+  int descriptor_ = -1;  // -1: finished
+};
+
+/// Files that appear under their names together or not at all.
+class AtomicFiles {
+ public:
+  /// A file that is now written, and finished before the next is added: only one is open, however many there are.
+  AtomicFile& add(const std::filesystem::path& path, bool overwrite);
+  /// All files are on the disk before the first gets its name. If one cannot have its own, those that had theirs lose
+  /// it again, unless they replaced a file. To be called once.
+  void commit();
+
+ private:
+  struct Entry {
+    std::filesystem::path path;
+    bool replaces = false;
+    std::unique_ptr<AtomicFile> file;
+  };
+  std::vector<Entry> entries_;
 };
 
 /// The whole of it in one call.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "demo_logger/formats/atomic_file.h"
 #include "demo_logger/trajectory/demonstration.h"
 
 namespace demo_logger {
@@ -25,5 +26,9 @@ LoadedDemonstration readDemonstration(const std::filesystem::path& csv);
 /// and `duration` are filled in. Throws FileError, also where `demonstration` contradicts itself: sizes that differ, no
 /// rows, times that do not strictly increase.
 void writeDemonstration(const std::filesystem::path& csv, const Demonstration& demonstration, bool overwrite = false);
+
+/// The same as two of several files that get their names together.
+void writeDemonstration(AtomicFiles& files, const std::filesystem::path& csv, const Demonstration& demonstration,
+                        bool overwrite);
 
 }  // namespace demo_logger
