@@ -56,8 +56,8 @@ Score scoreOf(const Demonstration& demonstration, Eigen::Index late = 0) {
 class KinestheticTest : public testing::Test {
  protected:
   /// The episode that the hand's buttons started and stopped.
-  Demonstration episode(const std::string& name_space) {
-    Listener<Status> statuses(ros::NodeHandle(name_space), "demo_logger/status");
+  Demonstration episode() {
+    Listener<Status> statuses(ros::NodeHandle(), "demo_logger/status");
     const auto saved = [&] {
       if (statuses.messages().empty()) return false;
       const Status& status = statuses.last();
@@ -76,12 +76,12 @@ class KinestheticTest : public testing::Test {
   }
 
   /// What `demo_tool torque` makes of it.
-  Demonstration taught(const std::string& name_space) {
+  Demonstration taught() {
     const std::filesystem::path folder =
         std::filesystem::path(testing::TempDir()) / ("kinesthetic_test_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder);
     std::string urdf;
-    EXPECT_TRUE(ros::NodeHandle(name_space).getParam("robot_description", urdf));
+    EXPECT_TRUE(ros::NodeHandle().getParam("robot_description", urdf));
     std::ofstream(folder / "arm.urdf") << urdf;
     const std::filesystem::path output = folder / "taught.csv";
     NodeProcess tool({std::string(DEMO_LOGGER_NODES) + "/demo_tool", "torque", csv_.string(), "-o", output.string(),
@@ -119,17 +119,17 @@ constexpr double kSmooth = 0.24;            // [%]
 constexpr Eigen::Index kObserverLate = 14;  // rows of 2 ms: the 27.5 ms by which the observer is late
 
 TEST_F(KinestheticTest, TheTorqueOfTheHandComesBackAsUsersGetIt) {
-  const Demonstration recorded = episode("");
+  const Demonstration recorded = episode();
   expectKinesthetic(recorded, "link", "instant");
-  const Score offline = scoreOf(taught(""));
+  const Score offline = scoreOf(taught());
   EXPECT_GT(offline.peak, 5.0) << "[N m]";
   EXPECT_LT(offline.error, kSticking) << "[%]";
 }
 
 TEST_F(KinestheticTest, AlsoFromTheMotorsAlone) {
-  const Demonstration recorded = episode("smooth");
+  const Demonstration recorded = episode();
   expectKinesthetic(recorded, "motor", "held");
-  const Score offline = scoreOf(taught("smooth"));
+  const Score offline = scoreOf(taught());
   EXPECT_GT(offline.peak, 5.0) << "[N m]";
   EXPECT_LT(offline.error, kSmooth) << "[%]";
   const Score online = scoreOf(recorded, kObserverLate);
