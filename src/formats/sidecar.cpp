@@ -178,6 +178,9 @@ std::vector<Column> parseColumns(const JsonFields& fields, std::vector<std::stri
     entry.read("role", role);
     entry.read("interpolation", interpolation);
     entry.read("source", column.source);
+    if (column.name == "time" && column.unit != "s") {
+      entry.refuse("unit", column.unit, "s, which times always are; convert them");
+    }
     const auto known_role = roleFromString(role);
     const auto known_interpolation = interpolationFromString(interpolation);
     if (!known_role) {

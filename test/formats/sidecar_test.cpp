@@ -176,6 +176,8 @@ TEST(SidecarTest, AWrongTypeNamesFileAndKey) {
             "demo_000007.json: key `streams[1].receipt_delay` is 3, expected an object {…}.");
   EXPECT_EQ(errorOf(R"({"format": "demo_logger/1", "columns": [{"unit": "rad"}]})"),
             "demo_000007.json: key `columns[0].name` is {\"unit\":\"rad\"}, expected the column's name.");
+  EXPECT_EQ(errorOf(R"({"format": "demo_logger/1", "columns": [{"name": "time", "unit": "ms"}]})"),
+            "demo_000007.json: key `columns[0].unit` is \"ms\", expected s, which times always are; convert them.");
   EXPECT_EQ(errorOf(R"({"format": "demo_logger/1", "columns": [{"name": "q", "role": "observation"}]})"),
             "demo_000007.json: key `columns[0].role` is \"observation\", expected state, control or auxiliary.");
   EXPECT_EQ(errorOf(R"({"format": "demo_logger/1", "start_stamp": {"secs": 1, "nsecs": 1000000000}})"),
