@@ -14,11 +14,45 @@ namespace demo_logger {
 
 using Index = Eigen::Index;
 
+namespace {
+
+constexpr double kMostPosition = 1e4;  // [rad or m] beyond where any joint is
+constexpr double kMostEffort = 1e6;    // [N m or N] beyond what any motor gives
+
+/// Without a sidecar the unit follows from the name, which knows of no joints that slide.
+void requireUnit(const Column& column, const JointQuantity& quantity, const ArmJoint& joint) {
+  const bool slides = joint.type == JointType::prismatic;
+  const std::string& unit = column.unit;
+  if (unit.empty() || unit == quantity.turning || (slides && unit == quantity.sliding)) return;
+  throw ConfigurationError("column `" + column.name + "` is in \"" + unit + "\", expected " +
+                           (slides ? quantity.sliding : quantity.turning) + " for the " + quantity.word +
+                           " of joint '" + joint.name + "'; convert it, or mend the sidecar");
+}
+
+/// Values that no arm has count as missing.
+void takeSane(Eigen::MatrixXd::ColXpr values, double most, const ArmJoint& joint, const JointQuantity& quantity,
+              std::vector<std::string>& notes) {
+  std::size_t rows = 0;
+  double first = kNaN;
+  for (double& value : values) {
+    if (!(std::abs(value) > most)) continue;
+    if (rows++ == 0) first = value;
+    value = kNaN;
+  }
+  if (rows == 0) return;
+  notes.push_back("joint '" + joint.name + "' has the " + quantity.word + " " + print(first) +
+                  (rows == 1 ? "" : ", the first of " + std::to_string(rows) + " such values") +
+                  ", which no arm has: it counts as missing");
+}
+
+}  // namespace
+
 RecordedJoints readJoints(const RobotDescription& robot, const Demonstration& demonstration) {
   const std::vector<std::string> names = robot.jointNames();
   const Index rows = demonstration.values.rows();
   const auto count = static_cast<Index>(names.size());
-  RecordedJoints joints{Eigen::MatrixXd(rows, count), Eigen::MatrixXd(rows, count), {}, false};
+  RecordedJoints joints;
+  joints.position = joints.effort = Eigen::MatrixXd::Constant(rows, count, kNaN);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto position = findJointColumn(demonstration.columns, kPosition, names[i]);
     if (!position) {
@@ -26,10 +60,14 @@ RecordedJoints readJoints(const RobotDescription& robot, const Demonstration& de
                                names[i] + "', which the torques depend on");
     }
     const auto column = static_cast<Index>(i);
-    joints.position.col(column) = demonstration.values.col(static_cast<Index>(*position));
+    const auto take = [&](std::size_t from, const JointQuantity& quantity, double most, Eigen::MatrixXd& into) {
+      requireUnit(demonstration.columns[from], quantity, robot.joints[i]);
+      into.col(column) = demonstration.values.col(static_cast<Index>(from));
+      takeSane(into.col(column), most, robot.joints[i], quantity, joints.notes);
+    };
+    take(*position, kPosition, kMostPosition, joints.position);
     const auto effort = findJointColumn(demonstration.columns, kEffort, names[i]);
-    joints.effort.col(column).setConstant(kNaN);
-    if (effort) joints.effort.col(column) = demonstration.values.col(static_cast<Index>(*effort));
+    if (effort) take(*effort, kEffort, kMostEffort, joints.effort);
     if (joints.effort.col(column).array().isNaN().all()) joints.without_effort.push_back(names[i]);
     joints.has_effort_columns = joints.has_effort_columns || effort.has_value();
   }

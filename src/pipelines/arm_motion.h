@@ -16,9 +16,10 @@ struct RecordedJoints {
   Eigen::MatrixXd effort;                   // empty: no efforts of any joint
   std::vector<std::string> without_effort;  // the joints that have none
   bool has_effort_columns = false;          // though they may hold nothing
+  std::vector<std::string> notes;           // of values that no arm has, which count as missing
 };
 
-/// Throws ConfigurationError naming the first joint without a column of positions.
+/// Throws ConfigurationError naming the first joint without a column of positions, or with one in another unit.
 RecordedJoints readJoints(const RobotDescription& robot, const Demonstration& demonstration);
 
 /// "no column `tau_elbow` with efforts of joint 'elbow'", or that there is one which holds none.

@@ -34,7 +34,7 @@ FitProblem::FitProblem(const RobotDescription& robot, const FitOptions& options,
     : meaning_(meaning), equations_(std::move(equations)) {
   ModelCalibration known = options.start;
   known.payload.reset();
-  robot_ = calibrate(robot, known).robot;
+  robot_ = calibrate(robot, known).seenAt(meaning.side);
   if (!meaning.includes_gravity) robot_.gravity.setZero();  // compensated beside what the efforts say
   shows_drives_ = meaning.side == "motor" || options.start.side == "link";
   fits_friction_ = options.friction.value_or(meaning.side == "motor");

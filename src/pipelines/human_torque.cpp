@@ -44,11 +44,10 @@ void decideOnEfforts(const HumanTorqueOptions& options, RecordedJoints& joints, 
 class Recovery {
  public:
   Recovery(const CalibratedArm& arm, EffortMetadata meaning, bool has_efforts, Index rows)
-      : model_(arm.robot),
+      : model_(arm.seenAt(meaning.side)),
         meaning_(std::move(meaning)),
-        shows_drives_(meaning_.side == arm.drives_side && has_efforts),
         n_(model_.size()),
-        bias_(shows_drives_ ? arm.torque_bias : Eigen::VectorXd(Eigen::VectorXd::Zero(n_))) {
+        bias_(has_efforts ? arm.biasAt(meaning_.side) : Eigen::VectorXd::Zero(n_)) {
     torque = deviation = velocity = acceleration = Eigen::MatrixXd::Constant(rows, n_, kNaN);
     tool = Eigen::MatrixXd::Constant(rows, 7, kNaN);
     noise_squares_ = Eigen::VectorXd::Zero(n_);
@@ -83,10 +82,7 @@ class Recovery {
     Eigen::VectorXd result = model_.inverseDynamics(q, dq, ddq) + bias_;
     Eigen::MatrixXd inertia = model_.massMatrix(q);
     Eigen::VectorXd uncertain = Eigen::VectorXd::Zero(n_);
-    if (shows_drives_) {
-      const Eigen::VectorXd velocity_deviation = motion.velocity_variance.row(k).cwiseSqrt();
-      addDrives(dq, ddq, velocity_deviation, result, inertia, uncertain);
-    }
+    addDrives(dq, ddq, motion.velocity_variance.row(k).cwiseSqrt(), result, inertia, uncertain);
     if (!has_efforts || !meaning_.includes_gravity) result -= model_.gravity(q);
     if (has_efforts) {
       result -= motion.effort.row(k).transpose();
@@ -130,7 +126,6 @@ class Recovery {
 
   RobotModel model_;
   const EffortMetadata meaning_;
-  const bool shows_drives_;  // the efforts have friction, motor inertia and bias of the drives in them
   const Index n_;
   const Eigen::VectorXd bias_;
   Eigen::VectorXd noise_squares_;
@@ -177,10 +172,12 @@ HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demon
   validate(meaning);
   RecordedJoints joints = readJoints(robot, demonstration);
   decideOnEfforts(options, joints, summary.notes);
+  summary.notes.insert(summary.notes.end(), joints.notes.begin(), joints.notes.end());
+  noteMissingPositions(robot, joints.position, summary.notes);
   noteMovingJointsBesideTheChain(robot, demonstration, summary.notes);
   notePositionsBeyondLimits(robot, demonstration.time, joints.position, summary.notes);
   const bool has_efforts = joints.effort.size() > 0;
-  if (has_efforts && meaning.side != arm.drives_side && (arm.drives_side == "link" || !arm.torque_bias.isZero(0.0))) {
+  if (arm.knowsOnlyTheOtherSide(meaning.side)) {
     summary.notes.push_back("the model's biases and friction are those of efforts measured at the " + arm.drives_side +
                             " side; here they were measured at the " + meaning.side + " side, so neither counts");
   }

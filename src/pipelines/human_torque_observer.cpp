@@ -37,10 +37,9 @@ void validate(const HumanTorqueObserverConfiguration& configuration) {
 
 HumanTorqueObserver::HumanTorqueObserver(const CalibratedArm& arm,
                                          const HumanTorqueObserverConfiguration& configuration)
-    : model_(withGentleFriction(arm.robot)),
-      configuration_((validate(configuration), configuration)),
-      shows_drives_(configuration.effort.side == arm.drives_side),
-      bias_(shows_drives_ ? arm.torque_bias : Eigen::VectorXd::Zero(model_.size())),
+    : model_(withGentleFriction((validate(configuration), arm.seenAt(configuration.effort.side)))),
+      configuration_(configuration),
+      bias_(arm.biasAt(configuration.effort.side)),
       motion_filter_(model_.size(), configuration.cutoff),
       torque_filter_(model_.size(), configuration.cutoff),
       observer_(model_.size(), configuration.gain) {
@@ -109,12 +108,9 @@ bool HumanTorqueObserver::findMomentumAndForces() {
                      model_.friction(dq_, friction_);
   if (!found) return false;
   momentum_.noalias() = mass_ * dq_;
-  forces_ = -gravity_ - work_;
-  if (shows_drives_) {
-    forces_ -= friction_;
-    for (Eigen::Index i = 0; i < momentum_.size(); ++i) {
-      momentum_[i] += model_.description().joints[static_cast<std::size_t>(i)].motor_inertia * dq_[i];
-    }
+  forces_ = -gravity_ - work_ - friction_;
+  for (Eigen::Index i = 0; i < momentum_.size(); ++i) {
+    momentum_[i] += model_.description().joints[static_cast<std::size_t>(i)].motor_inertia * dq_[i];
   }
   return addMassRate();
 }

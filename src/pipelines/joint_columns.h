@@ -9,15 +9,16 @@
 
 namespace demo_logger {
 
-/// What is recorded of a joint: `prefix` of the column ("q_") and word in its source ("position").
+/// What is recorded of a joint: `prefix` of the column ("q_"), word in its source ("position"), and units.
 struct JointQuantity {
   const char* prefix;
   const char* word;
+  const char* turning = "";  // unit, of a joint that turns
+  const char* sliding = "";  // ditto, that slides
 };
 
-constexpr JointQuantity kPosition = {"q_", "position"};
-constexpr JointQuantity kVelocity = {"dq_", "velocity"};
-constexpr JointQuantity kEffort = {"tau_", "effort"};
+constexpr JointQuantity kPosition = {"q_", "position", "rad", "m"};
+constexpr JointQuantity kEffort = {"tau_", "effort", "N m", "N"};
 
 /// How the source of a column begins that was made from positions by a smoother.
 constexpr const char* kSmoothed = "smoothed/";

@@ -39,6 +39,18 @@ void noteMovingJointsBesideTheChain(const RobotDescription& robot, const Demonst
   }
 }
 
+void noteMissingPositions(const RobotDescription& robot, const Eigen::MatrixXd& position,
+                          std::vector<std::string>& notes) {
+  for (Index k = 0; k < position.rows(); ++k) {
+    if (position.row(k).allFinite()) return;
+  }
+  Index worst = 0;
+  const Index missing = position.array().isNaN().cast<Index>().colwise().sum().maxCoeff(&worst);
+  notes.push_back("in no row do all joints have a position (joint '" +
+                  robot.joints[static_cast<std::size_t>(worst)].name + "' has none in " + std::to_string(missing) +
+                  " of " + std::to_string(position.rows()) + "): nothing can be told");
+}
+
 void notePositionsBeyondLimits(const RobotDescription& robot, const std::vector<double>& time,
                                const Eigen::MatrixXd& position, std::vector<std::string>& notes) {
   constexpr double kTolerated = 0.1;  // of the range: limits of software are passed by a little

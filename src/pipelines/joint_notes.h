@@ -13,6 +13,10 @@ namespace demo_logger {
 void noteMovingJointsBesideTheChain(const RobotDescription& robot, const Demonstration& demonstration,
                                     std::vector<std::string>& notes);
 
+/// Of joints that leave no row with positions of all.
+void noteMissingPositions(const RobotDescription& robot, const Eigen::MatrixXd& position,
+                          std::vector<std::string>& notes);
+
 /// Of joints whose positions (rows x joints [rad or m]) no such arm can have: a wrong reading, another unit.
 void notePositionsBeyondLimits(const RobotDescription& robot, const std::vector<double>& time,
                                const Eigen::MatrixXd& position, std::vector<std::string>& notes);

@@ -31,6 +31,22 @@ CalibratedBody calibratedBody(const BodyInertia& body) {
   return result;
 }
 
+RobotDescription CalibratedArm::seenAt(const std::string& side) const {
+  RobotDescription seen = robot;
+  if (side == "link") {
+    for (ArmJoint& joint : seen.joints) joint.motor_inertia = joint.damping = joint.friction = 0.0;
+  }
+  return side == drives_side ? withDrives(seen, drives) : seen;
+}
+
+Eigen::VectorXd CalibratedArm::biasAt(const std::string& side) const {
+  return side == drives_side ? torque_bias : Eigen::VectorXd::Zero(torque_bias.size());
+}
+
+bool CalibratedArm::knowsOnlyTheOtherSide(const std::string& side) const {
+  return side != drives_side && !(drives.empty() && torque_bias.isZero(0.0));
+}
+
 CalibratedArm calibrate(const RobotDescription& robot, const std::filesystem::path& file) {
   if (file.empty()) return calibrate(robot, ModelCalibration());
   try {
@@ -53,15 +69,14 @@ CalibratedArm calibrate(const RobotDescription& robot, const ModelCalibration& c
   arm.robot = withBodies(robot, bodies);
   if (calibration.payload) arm.robot = withPayload(arm.robot, calibration.payload->body());
 
-  std::map<std::string, JointDrive> drives;
   const auto valueOf = [](const std::optional<CalibratedValue>& calibrated) {
     return calibrated ? std::optional<double>(calibrated->value) : std::nullopt;
   };
   for (const auto& [joint, found] : calibration.joints) {
-    drives[joint] = {valueOf(found.motor_inertia), valueOf(found.damping), valueOf(found.friction),
-                     found.friction_velocity};
+    arm.drives[joint] = {valueOf(found.motor_inertia), valueOf(found.damping), valueOf(found.friction),
+                         found.friction_velocity};
   }
-  arm.robot = withDrives(arm.robot, drives);
+  withDrives(arm.robot, arm.drives);  // refuses joints that are not the arm's
 
   arm.torque_bias = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(robot.joints.size()));
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {

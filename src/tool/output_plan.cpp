@@ -78,8 +78,13 @@ void refuseToDestroy(const std::vector<InputAndOutput>& plan, const std::vector<
   for (const InputAndOutput& entry : plan) {
     refuseIfAmong(read, entry.output);
     refuseIfAmong(read, sidecarPath(entry.output));
-    written.emplace(placeOf(entry.output), "the output " + entry.output.string());
-    written.emplace(placeOf(sidecarPath(entry.output)), "the sidecar of the output " + entry.output.string());
+    const std::string output = "the output " + entry.output.string();
+    const auto [other, is_new] = written.emplace(placeOf(sidecarPath(entry.output)), "the sidecar of " + output);
+    if (!is_new) {
+      throw FileError("the sidecar of " + output + " and " + other->second + " would both become " +
+                      sidecarPath(entry.output).string() + "; rename an input, or run them one by one");
+    }
+    written.emplace(placeOf(entry.output), output);
   }
   if (also_written.empty()) return;
   refuseIfAmong(read, also_written);

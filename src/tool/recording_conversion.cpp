@@ -75,14 +75,18 @@ int convertRecordings(const ConversionOptions& options, const Conversion& conver
   if (conversion.prepare) {
     try {
       if (const auto exit_code = conversion.prepare(arm, recordings)) return *exit_code;
-    } catch (const ConfigurationError& error) {
+    } catch (const FileError&) {
+      throw;
+    } catch (const Error& error) {
       throw FileError((plan.size() == 1 ? plan.front().input.string() + ": " : std::string()) + error.what());
     }
   }
   runJobs(plan.size(), options.jobs, [&](std::size_t i) {
     try {
       reports[i] = conversion.convert(arm, recordings[i]);
-    } catch (const ConfigurationError& error) {
+    } catch (const FileError&) {
+      throw;
+    } catch (const Error& error) {
       throw FileError(plan[i].input.string() + ": " + error.what());
     }
     noteOrigin(plan[i].input, arm, describeStep(conversion.step, arm, options), recordings[i].demonstration.metadata);

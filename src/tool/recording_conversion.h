@@ -35,9 +35,11 @@ void addConversionOptions(CLI::App& verb, ConversionOptions& options, const std:
 /// What is to be done with each recording, and, if given, with all of them.
 struct Conversion {
   std::string step;  // of the provenance, to which the robot's options are added
-  /// Once, with all recordings read and none converted. An exit code ends it all there: nothing is written.
-  std::function<std::optional<int>(const RobotDescription&, const std::vector<LoadedDemonstration>&)> prepare;
-  /// Works on the recording, may add to its notes, and throws ConfigurationError, which gets the file's name in front.
+  /// Once, with all recordings read and none converted; may correct what they say. An exit code ends it all there:
+  /// nothing is written.
+  std::function<std::optional<int>(const RobotDescription&, std::vector<LoadedDemonstration>&)> prepare;
+  /// Works on the recording, may add to its notes, and throws ConfigurationError or ModelError, which get the file's
+  /// name in front.
   std::function<ConversionReport(const RobotDescription&, LoadedDemonstration&)> convert;
   std::string also_read;                    // a file beside the recordings and the URDF; empty: none
   std::string also_written;                 // a file beside the outputs; empty: none

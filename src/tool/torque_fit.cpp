@@ -2,6 +2,7 @@
 #include "src/tool/output_plan.h"
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -58,8 +59,9 @@ void addTorqueFitOptions(CLI::App& verb, TorqueFitOptions& options) {
                   "FROM:TO [s] since the first row, where no hand touches the arm; may be repeated (default: found, as "
                   "what one model explains)")
       ->needs("--fit");
-  verb.add_flag("--fit-friction,!--no-fit-friction", options.friction,
-                "fit friction (default: if the efforts are those of the motors)")
+  verb.add_flag_function(
+          "--fit-friction,!--no-fit-friction", [&options](std::int64_t count) { options.friction = count > 0; },
+          "fit friction (default: if the efforts are those of the motors)")
       ->needs("--fit");
   verb.add_flag("--fit-bodies", options.bodies,
                 "fit mass, centre and inertia of every body, not those of a payload alone; takes a long motion of all "

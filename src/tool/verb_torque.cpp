@@ -38,18 +38,21 @@ std::string largestTorque(const RobotDescription& arm, const std::vector<double>
   return largest ? ", at most " + print(torques[*largest]) + " at " + arm.jointNames()[*largest] : "";
 }
 
-/// Where nothing says what the efforts mean, what they are taken for.
-void noteAssumedMeaning(const Options& options, const EffortMetadata& meaning, LoadedDemonstration& recording) {
+/// What a recording's efforts mean, as it says or as the command line does; where neither says it, a note of what they
+/// are taken for.
+void explainEfforts(const Options& options, LoadedDemonstration& recording) {
+  Metadata& metadata = recording.demonstration.metadata;
   const bool is_told = !options.effort.side.empty() && !options.effort.timing.empty();
-  if (is_told || options.gravity_compensated || saysWhatEffortsMean(recording.demonstration.metadata)) return;
-  recording.notes.push_back("nothing recorded says what the efforts mean: they count as " + meaning.timing +
-                            " at the " + meaning.side + " side; --side, --effort and --control-period say otherwise");
+  const bool is_known = is_told || options.gravity_compensated || saysWhatEffortsMean(metadata);
+  metadata.effort = corrected(metadata.effort, options.effort);
+  if (is_known) return;
+  recording.notes.push_back("nothing recorded says what the efforts mean: they count as " + metadata.effort.timing +
+                            " at the " + metadata.effort.side +
+                            " side; --side, --effort and --control-period say otherwise");
 }
 
 ConversionReport addTorques(const CalibratedArm& arm, LoadedDemonstration& recording, const Options& options) {
   HumanTorqueOptions torque;
-  torque.effort = corrected(recording.demonstration.metadata.effort, options.effort);
-  noteAssumedMeaning(options, *torque.effort, recording);
   torque.gravity_compensated = options.gravity_compensated;
   torque.max_gap = options.max_gap;
   const HumanTorqueSummary summary = addHumanTorque(arm, recording.demonstration, torque);
@@ -72,12 +75,10 @@ int recoverTorques(const Options& options) {
   TorqueModel model(options.fit, options.conversion.force, options.conversion.json);
   Conversion conversion;
   conversion.step = stepOf(options);
-  conversion.prepare = [&](const RobotDescription& arm, const std::vector<LoadedDemonstration>& recordings) {
+  conversion.prepare = [&](const RobotDescription& arm, std::vector<LoadedDemonstration>& recordings) {
+    for (LoadedDemonstration& recording : recordings) explainEfforts(options, recording);
     FitOptions fit;
     fit.max_gap = options.max_gap;
-    if (options.effort.any()) {
-      fit.effort = corrected(recordings.front().demonstration.metadata.effort, options.effort);
-    }
     return model.prepare(arm, recordings, fit);
   };
   conversion.convert = [&](const RobotDescription&, LoadedDemonstration& recording) {

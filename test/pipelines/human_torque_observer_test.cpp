@@ -122,7 +122,7 @@ TEST(HumanTorqueObserverTest, WhatACalibrationFoundOfTheArmIsNotTheHands) {
     one.calibration.joints["joint_2"].damping = CalibratedValue{0.8, 0.0};
     one.calibration.joints["joint_1"].torque_bias = CalibratedValue{0.5, 0.0};
     const CalibratedArm real = calibrated(one);
-    const RobotModel model(real.robot);
+    const RobotModel model(real.seenAt(side));
     HumanTorqueObserver observer(real, one.configuration);
     Eigen::VectorXd torque(2);
     double largest = 0.0;

@@ -298,15 +298,75 @@ TEST(HumanTorqueTest, APositionThatTheArmCannotHaveIsNamed) {
   Demonstration demonstration = record({});
   demonstration.values(1500, 1) = 3.5;  // past its limits by less than a tenth of its range, as software limits are
   EXPECT_TRUE(addHumanTorque(arm, demonstration).notes.empty());
-  demonstration.values(1000, 1) = 1e6;
-  EXPECT_EQ(
-      addHumanTorque(arm, demonstration).notes,
-      std::vector<std::string>{
-          "joint 'joint_2' is at 1e+06 rad at 1 s, far beyond its limits of -3 to 3 rad: what is said around there "
-          "is worth as much; `demo_tool check` may say more"});
+  demonstration.values(1000, 1) = 60.0;
+  EXPECT_EQ(addHumanTorque(arm, demonstration).notes,
+            std::vector<std::string>{
+                "joint 'joint_2' is at 60 rad at 1 s, far beyond its limits of -3 to 3 rad: what is said around there "
+                "is worth as much; `demo_tool check` may say more"});
   demonstration.values(2000, 1) = -60.0;
   EXPECT_NE(addHumanTorque(arm, demonstration).notes.front().find("at 1 s, the first of 2 such rows, far"),
             std::string::npos);
+}
+
+TEST(HumanTorqueTest, ValuesThatNoArmHasCountAsMissing) {
+  Demonstration demonstration = record({});
+  demonstration.values(1000, 7 + 1) = 1e300;
+  demonstration.values(2000, 0) = 1e12;
+  const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
+  const std::vector<std::string> expected = {
+      "joint 'joint_1' has the position 1e+12, which no arm has: it counts as missing",
+      "joint 'joint_2' has the effort 1e+300, which no arm has: it counts as missing"};
+  EXPECT_EQ(std::vector<std::string>(summary.notes.begin(), summary.notes.begin() + 2), expected);
+  EXPECT_NEAR(value(demonstration, 1003, "tau_h_joint_2"), handTorqueAt(1.003)[1], 2e-3) << "its neighbours stay";
+  EXPECT_NEAR(value(demonstration, 2000, "tau_h_joint_1"), handTorqueAt(2.0)[0], 2e-3) << "bridged";
+  EXPECT_EQ(demonstration.values(2000, 0), 1e12) << "what was recorded stays";
+}
+
+TEST(HumanTorqueTest, JointsThatHaveNoPositionAtTheSameTimeAreNamed) {
+  Demonstration demonstration = record({});
+  const double missing = std::numeric_limits<double>::quiet_NaN();
+  for (Index k = 0; k < demonstration.values.rows(); ++k) demonstration.values(k, k % 3 == 0 ? 1 : 3) = missing;
+  const HumanTorqueSummary summary = addHumanTorque(frictionless(), demonstration);
+  EXPECT_EQ(summary.rows, 0U);
+  EXPECT_EQ(summary.notes, std::vector<std::string>{
+                               "in no row do all joints have a position (joint 'joint_4' has none in 2666 of 4000): "
+                               "nothing can be told"});
+}
+
+TEST(HumanTorqueTest, AColumnInAnotherUnitIsRefused) {
+  const auto refusal = [](std::size_t column, const std::string& unit) -> std::string {
+    Demonstration demonstration = record({});
+    demonstration.columns[column].unit = unit;
+    try {
+      addHumanTorque(frictionless(), demonstration);
+    } catch (const ConfigurationError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(0, "deg"),
+            "column `q_joint_1` is in \"deg\", expected rad for the position of joint 'joint_1'; convert it, or mend "
+            "the sidecar");
+  EXPECT_EQ(refusal(8, "mN m"),
+            "column `tau_joint_2` is in \"mN m\", expected N m for the effort of joint 'joint_2'; convert it, or mend "
+            "the sidecar");
+  EXPECT_NE(refusal(0, "m"), "") << "a joint that turns";
+  EXPECT_EQ(refusal(0, "rad"), "");
+}
+
+TEST(HumanTorqueTest, AModelOfOneSideLeavesTheOtherSidesDrivesAlone) {
+  const auto torqueOfHand = [](const ModelCalibration& model) {
+    Teaching with_losses;
+    with_losses.with_friction = true;
+    Demonstration demonstration = record(with_losses);
+    addHumanTorque(calibrate(demoArm(), model), demonstration);
+    return value(demonstration, 2000, "tau_h_joint_2");
+  };
+  ModelCalibration of_links;
+  of_links.side = "link";
+  of_links.joints["joint_2"].friction = CalibratedValue{5.0, 0.0};
+  EXPECT_NEAR(torqueOfHand(of_links), torqueOfHand(ModelCalibration()), 1e-9)
+      << "the URDF's friction is still that of the motors";
 }
 
 TEST(HumanTorqueTest, AMovingJointBesideTheChainIsNamed) {

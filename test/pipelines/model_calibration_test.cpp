@@ -198,8 +198,36 @@ TEST(ModelCalibrationTest, DrivesAndBiasesGoToTheirJoints) {
   EXPECT_EQ(arm.drives_side, "link");
   EXPECT_EQ(arm.torque_bias[4], 0.7);
   EXPECT_EQ(arm.torque_bias.cwiseAbs().sum(), 0.7);
-  EXPECT_EQ(arm.robot.joints[1].friction, 0.3);
-  EXPECT_EQ(arm.robot.joints[1].damping, demoArm().joints[1].damping) << "what is absent stays";
+  EXPECT_EQ(arm.seenAt("link").joints[1].friction, 0.3);
+  EXPECT_EQ(arm.biasAt("link")[4], 0.7);
+}
+
+TEST(ModelCalibrationTest, EffortsOfEachSideShowTheDrivesOfThatSide) {
+  RobotDescription robot = demoArm();
+  robot.joints[1].motor_inertia = 0.1;
+  ASSERT_GT(robot.joints[1].damping, 0.0);
+  ModelCalibration calibration;
+  calibration.joints["joint_2"].friction = CalibratedValue{0.3, 0.0};
+  calibration.joints["joint_2"].torque_bias = CalibratedValue{0.7, 0.0};
+
+  const CalibratedArm of_motors = calibrate(robot, calibration);
+  EXPECT_EQ(of_motors.seenAt("motor").joints[1].friction, 0.3);
+  EXPECT_EQ(of_motors.seenAt("motor").joints[1].damping, robot.joints[1].damping) << "what is absent stays";
+  EXPECT_EQ(of_motors.biasAt("motor")[1], 0.7);
+  EXPECT_EQ(of_motors.seenAt("link").joints[1].friction, 0.0);
+  EXPECT_EQ(of_motors.seenAt("link").joints[1].damping, 0.0) << "the URDF's is that of the motors";
+  EXPECT_TRUE(of_motors.biasAt("link").isZero(0.0));
+  EXPECT_TRUE(of_motors.knowsOnlyTheOtherSide("link"));
+
+  calibration.side = "link";
+  const CalibratedArm of_links = calibrate(robot, calibration);
+  EXPECT_EQ(of_links.seenAt("link").joints[1].friction, 0.3);
+  EXPECT_EQ(of_links.seenAt("link").joints[1].damping, 0.0);
+  EXPECT_EQ(of_links.seenAt("link").joints[1].motor_inertia, 0.0);
+  EXPECT_EQ(of_links.seenAt("motor").joints[1].damping, robot.joints[1].damping) << "the description's own count";
+  EXPECT_EQ(of_links.seenAt("motor").joints[1].motor_inertia, 0.1);
+  EXPECT_EQ(of_links.seenAt("motor").joints[1].friction, robot.joints[1].friction);
+  EXPECT_TRUE(of_links.biasAt("motor").isZero(0.0));
 }
 
 TEST(ModelCalibrationTest, AnotherArmsModelIsRefused) {

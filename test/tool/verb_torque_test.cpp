@@ -156,6 +156,66 @@ TEST(VerbTorqueTest, AFitWritesTheModelAndGoesByIt) {
   EXPECT_EQ(fit["residual"].size(), 2U);
 }
 
+TEST(VerbTorqueTest, FrictionIsFittedUnaskedWhereTheEffortsAreTheMotors) {
+  const ToolRun run;
+  run.write("free.csv", swinging(10.0, 0.0, 0.0));
+  const auto stepAndFindings = [&](const std::string& how) {
+    const auto outcome =
+        run("torque free.csv -o out.csv --fit arm.yaml --force --effort instant --json " + how + kTwoLink);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return nlohmann::json::parse(run.read("out.json"))["provenance"]["steps"].back().get<std::string>() +
+           nlohmann::json::parse(outcome.out)["fit"]["findings"].dump();
+  };
+  const std::string unasked = stepAndFindings("--side motor");
+  EXPECT_EQ(unasked.find("fit-friction"), std::string::npos) << unasked;
+  EXPECT_EQ(unasked.find("friction is not fitted"), std::string::npos) << unasked;
+  const std::string refused = stepAndFindings("--side motor --no-fit-friction");
+  EXPECT_NE(refused.find("--no-fit-friction"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("friction is not fitted"), std::string::npos) << refused;
+  EXPECT_NE(stepAndFindings("--side link --fit-friction").find(" --fit-friction"), std::string::npos);
+}
+
+TEST(VerbTorqueTest, RecordingsOfBothSidesAreNotFittedTogetherWhateverElseIsSaidOfThem) {
+  const ToolRun run;
+  const std::string sidecar = R"({"format":"demo_logger/1","effort":{"side":")";
+  for (const std::string side : {"motor", "link"}) {
+    run.write(side + ".csv", swinging(5.0, 0.0, 0.0));
+    run.write(side + ".json", sidecar + side + "\"}}");
+  }
+  for (const std::string more : {"", " --control-period 0.001", " --effort instant"}) {
+    const auto outcome = run("torque motor.csv link.csv -o taught --fit arm.yaml" + more + kTwoLink);
+    EXPECT_EQ(outcome.exit_code, 2) << more;
+    EXPECT_NE(outcome.err.find("efforts were measured at different sides of the gears"), std::string::npos)
+        << more << ": " << outcome.err;
+  }
+  EXPECT_EQ(run("torque motor.csv link.csv -o taught --fit arm.yaml --side link" + kTwoLink).exit_code, 0);
+}
+
+TEST(VerbTorqueTest, TwoOutputsWithOneSidecarAreRefusedBeforeAnythingIsWritten) {
+  const ToolRun run;
+  run.write("a.csv", upright(20));
+  run.write("a.txt", upright(20));
+  const auto outcome = run("torque a.csv a.txt -o taught --force" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.err,
+            "the sidecar of the output taught/a.txt and the sidecar of the output taught/a.csv would both become "
+            "taught/a.json; "
+            "rename an input, or run them one by one\n");
+  EXPECT_FALSE(run.exists("taught"));
+}
+
+TEST(VerbTorqueTest, OfSeveralInputsTheOneThatCannotBeIsNamedAndNoOutputWritten) {
+  const ToolRun run;
+  run.write("good.csv", upright(20));
+  std::string wild = "time,q_joint_1,q_joint_2,tau_joint_1,tau_joint_2\n";
+  for (int k = 0; k < 20; ++k) wild += std::to_string(k) + "e-200," + std::to_string(k % 3) + ",0,0,0\n";
+  run.write("wild.csv", wild);
+  const auto outcome = run("torque good.csv wild.csv -o taught" + kTwoLink);
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
+  EXPECT_EQ(outcome.err.rfind("wild.csv: ", 0), 0U) << outcome.err;
+  EXPECT_FALSE(run.exists("taught/good.csv"));
+}
+
 TEST(VerbTorqueTest, WhereAHandIsAllTheTimeNothingIsWrittenAndTheReasonSaid) {
   const ToolRun run;
   run.write("held.csv", swinging(10.0, 0.0, 8.0));

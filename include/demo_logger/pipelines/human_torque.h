@@ -12,7 +12,8 @@ namespace demo_logger {
 
 struct HumanTorqueOptions {
   std::optional<EffortMetadata> effort;  // what the efforts mean; nothing: what the recording's metadata says
-  /// The arm was compensated for gravity while it was taught: τ_c = g(q) stands in for efforts that are not there.
+  /// The arm was compensated for gravity while it was taught: τ_motor or τ_link = g(q), by the side that is said of
+  /// them, stands in for efforts that are not there.
   bool gravity_compensated = false;
   double max_gap = 0.1;  // [s] nothing is concluded across a longer silence of the joints
 };
@@ -43,9 +44,8 @@ struct HumanTorqueSummary {
 /// Throws ConfigurationError naming the first joint without a column of positions, efforts that no joint has
 /// (unless gravity_compensated), an unknown side or timing, or held efforts without their control period; ModelError
 /// for an arm without inertia.
-/// With a calibrated arm, its torque bias is taken off the efforts, and efforts measured at the links show friction and
-/// motor inertia too where the calibration was made with such efforts (drives_side). Efforts of the other side have
-/// neither; a note says so.
+/// With a calibrated arm, its torque bias is taken off the efforts, and its drives count, if it was made with efforts
+/// of the same side (CalibratedArm); a note says if not.
 HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demonstration,
                                   const HumanTorqueOptions& options = {});
 HumanTorqueSummary addHumanTorque(const RobotDescription& robot, Demonstration& demonstration,

@@ -65,7 +65,6 @@ class HumanTorqueObserver {
 
   RobotModel model_;
   const HumanTorqueObserverConfiguration configuration_;
-  const bool shows_drives_;  // the efforts have friction, motor inertia and bias of the drives in them
   const Eigen::VectorXd bias_;
   VelocityFilter motion_filter_;
   LowPass torque_filter_;

@@ -62,16 +62,25 @@ std::string textOf(const ModelCalibration& calibration);
 void writeModelCalibration(const std::filesystem::path& path, const ModelCalibration& calibration,
                            bool overwrite = false);
 
-/// An arm with what a calibration says of it.
+/// An arm with what a calibration says of it. What its drives do depends on where one looks: efforts of the motors show
+/// the friction and the motor inertia that the description has, or that a calibration of such efforts found instead;
+/// efforts measured at the links show none but those that a calibration of such efforts found.
 struct CalibratedArm {
-  RobotDescription robot;
-  Eigen::VectorXd torque_bias;  // per joint, to be subtracted from efforts measured at `side`
-  std::string drives_side =
-      "motor";  // efforts measured there show friction and motor inertia of the joints, others not
+  RobotDescription robot;                    // with its bodies and payload, and the description's drives
+  std::map<std::string, JointDrive> drives;  // by joint, of the calibration
+  Eigen::VectorXd torque_bias;               // per joint, of the calibration [N m or N]
+  std::string drives_side = "motor";         // of the efforts that it was made of
+
+  /// The arm with the drives that efforts measured at `side` show.
+  RobotDescription seenAt(const std::string& side) const;
+  /// What is to be subtracted from efforts measured at `side`.
+  Eigen::VectorXd biasAt(const std::string& side) const;
+  /// Whether drives or a bias are known of the other side only, so that nothing of them counts.
+  bool knowsOnlyTheOtherSide(const std::string& side) const;
 };
 
-/// Bodies and payload by withBodies and withPayload, drives by withDrives; of an empty calibration the description as
-/// it is. Throws ModelError for joints that are not the arm's, another tip, or masses that leave no possible body.
+/// Bodies and payload by withBodies and withPayload; of an empty calibration the description as it is. Throws
+/// ModelError for joints that are not the arm's, another tip, or masses that leave no possible body.
 CalibratedArm calibrate(const RobotDescription& robot, const ModelCalibration& calibration);
 /// The same by a file; without one (an empty path) as the URDF has it. Throws FileError, which names the file.
 CalibratedArm calibrate(const RobotDescription& robot, const std::filesystem::path& file);
