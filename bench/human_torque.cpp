@@ -250,7 +250,7 @@ void measureHonesty() {
       "\n## Is it as sure as it says\n\nShare of samples whose error is within two of their own standard "
       "deviations, and the root mean square of error over deviation; exact model, 1 kHz, all joints and rows.\n\n"
       "| noise | within 2σ (median, least) | rms(error / σ) (median, largest) |\n|---|---|---|\n");
-  for (const double noise : {1e-5, 1e-4, 1e-3, 0.0}) {
+  for (const double noise : {1e-5, 1e-4, 1e-3, 3e-3, 0.0}) {
     std::vector<double> within, ratio;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
       Teaching teaching = taught(seed);
@@ -268,6 +268,11 @@ void measureHonesty() {
                 100.0 * medianOf(within), 100.0 * *std::min_element(within.begin(), within.end()), medianOf(ratio),
                 *std::max_element(ratio.begin(), ratio.end()));
   }
+  std::printf(
+      "\nThe hand trembles at 7 to 11 Hz, the wrists by some 2e-4 rad. Under noise of 1e-3 rad the smoother takes most "
+      "of that away; the deviation holds it as far as the residuals show it beyond chance. Under 3e-3 rad they hardly "
+      "show it in a recording of 8 s, and what noise hides no deviation can hold. An encoder's deviations are wide: "
+      "where a joint is slow or rests, its steps are no white noise.\n");
 }
 
 /// A guided arm for as long as one likes: one teaching after the other.

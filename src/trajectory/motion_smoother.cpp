@@ -8,6 +8,7 @@
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
 #include "random_snap_filter.h"
+#include "removed_motion.h"
 
 namespace demo_logger {
 namespace {
@@ -236,8 +237,11 @@ SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::Vector
   uniform.run(0, time.size());
   const double r = uniform.variance();
   RandomSnapFilter filter(time, position, interval, T);
-  filter.setLiveliness(LivelinessSearch(time, position, interval, T, r).search());
-  return filter.smooth(r);
+  const std::vector<double> liveliness = LivelinessSearch(time, position, interval, T, r).search();
+  filter.setLiveliness(liveliness);
+  SmoothedMotion motion = filter.smooth(r);
+  addRemovedMotion(time, position, interval, liveliness, motion);
+  return motion;
 }
 
 SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position, double time_constant) {

@@ -27,12 +27,17 @@ struct SmoothedMotion {
 /// longer record): nothing is to be tuned. Where the motion is calmer for a while than elsewhere, S is smaller, by the
 /// likelihood of each piece of some 40 T: a gentle part is not smoothed as if it were the jerky one before it.
 ///
+/// The covariance is the posterior's, plus what the smoothing visibly took away from a motion that is no random snap
+/// (a hand's tremor, under coarse noise): where the residuals z − q̂ at a frequency ω hold more power than the noise
+/// leaves in them, (1 − H) r with H = 1 / (1 + (ωT)⁸), by more than chance, the excess p(ω) adds ω²ⁱ p(ω) to the
+/// variance of the i-th derivative. A motion that the noise hides altogether is missing from it too.
+///
 /// The samples must number at least kFewestSamples finite ones. Positions that are NaN count as not measured: the
 /// estimate bridges them, and its covariance says how well. Throws Error where the times do not increase, are not
 /// finite, differ in number from the positions, or where there are too few of these.
 SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position);
 
-/// The same with a given T [s], all through.
+/// The same with a given T [s], all through; the covariance is the posterior's alone.
 SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position, double time_constant);
 
 constexpr int kFewestSamples = 8;
