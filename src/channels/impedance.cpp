@@ -2,29 +2,12 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <cmath>
-#include <string>
-
-#include "demo_logger/trajectory/error.h"
-#include "demo_logger/trajectory/print.h"
 
 namespace demo_logger {
 namespace {
 
 // What rounding leaves of a radius of 1, which an arm without stiffness has: nothing calls it back.
 constexpr double kRounding = 1e-9;
-
-void requireGains(const char* name, const Eigen::VectorXd& values, const char* unit, Eigen::Index joints) {
-  if (values.size() != joints) {
-    throw ConfigurationError(std::string("impedance: ") + name + " has " + std::to_string(values.size()) +
-                             " values, expected one for each of " + std::to_string(joints) + " joints.");
-  }
-  for (Eigen::Index i = 0; i < joints; ++i) {
-    if (values[i] >= 0.0 && std::isfinite(values[i])) continue;
-    throw ConfigurationError(std::string("impedance: ") + name + " of joint " + std::to_string(i + 1) + " is " +
-                             print(values[i]) + " " + unit + ", expected a number of at least 0.");
-  }
-}
 
 }  // namespace
 
@@ -50,11 +33,6 @@ ImpedanceStability judgeStability(const ImpedanceGains& gains, const Eigen::Matr
   stability.spectral_radius = period.eigenvalues().cwiseAbs().maxCoeff();
   stability.stable = stability.damping_rate <= 1.0 / h && stability.spectral_radius <= 1.0 + kRounding;
   return stability;
-}
-
-void validate(const ImpedanceGains& gains, Eigen::Index joints) {
-  requireGains("stiffness", gains.stiffness, "N m/rad", joints);
-  requireGains("damping", gains.damping, "N m s/rad", joints);
 }
 
 }  // namespace demo_logger

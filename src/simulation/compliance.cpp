@@ -45,26 +45,35 @@ Eigen::MatrixXd inertia(const RobotModel& model, const Eigen::VectorXd& q) {
 const char* stiffnessUnit(const ArmJoint& joint) { return joint.type == JointType::prismatic ? " N/m" : " N m/rad"; }
 const char* dampingUnit(const ArmJoint& joint) { return joint.type == JointType::prismatic ? " N s/m" : " N m s/rad"; }
 
-template <typename Unit>
-Eigen::VectorXd perJoint(const RobotDescription& arm, const std::string& name, const std::vector<double>& asked,
-                         const Eigen::VectorXd& fallback, Unit unit) {
+Eigen::VectorXd perJoint(const RobotDescription& arm, const char* name, const std::vector<double>& asked,
+                         const Eigen::VectorXd& fallback) {
   if (asked.empty()) return fallback;
   const std::size_t joints = arm.joints.size();
   if (asked.size() != 1 && asked.size() != joints) {
-    throw ConfigurationError("impedance: " + name + " has " + std::to_string(asked.size()) +
+    throw ConfigurationError(std::string("impedance: ") + name + " has " + std::to_string(asked.size()) +
                              " values, expected one for each of the " + std::to_string(joints) +
                              " joints, one for all of them, or none for the defaults.");
   }
   Eigen::VectorXd values(static_cast<Eigen::Index>(joints));
   for (std::size_t i = 0; i < joints; ++i) {
-    const double value = asked.size() == 1 ? asked.front() : asked[i];
-    if (!(value >= 0.0) || !std::isfinite(value)) {
-      throw ConfigurationError("impedance: " + name + " of " + arm.joints[i].name + " is " + print(value) +
-                               unit(arm.joints[i]) + ", expected a number of at least 0.");
-    }
-    values[static_cast<Eigen::Index>(i)] = value;
+    values[static_cast<Eigen::Index>(i)] = asked.size() == 1 ? asked.front() : asked[i];
   }
   return values;
+}
+
+void requireRange(const RobotDescription& arm, const char* name, const Eigen::VectorXd& values,
+                  const char* (*unit)(const ArmJoint&)) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    if (values[i] >= 0.0 && values[i] <= kLargestGain) continue;
+    const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
+    throw ConfigurationError(std::string("impedance: ") + name + " of " + joint.name + " is " + print(values[i]) +
+                             unit(joint) + ", expected a number from 0 to " + print(kLargestGain) + unit(joint) + ".");
+  }
+}
+
+void requireRange(const RobotDescription& arm, const ImpedanceGains& gains) {
+  requireRange(arm, "stiffness", gains.stiffness, stiffnessUnit);
+  requireRange(arm, "damping", gains.damping, dampingUnit);
 }
 
 /// The joint that the fastest motion against the damping moves most, counted by what its damper takes from it.
@@ -101,7 +110,7 @@ double dampableShare(const ImpedanceGains& gains, const RobotModel& model, const
                      double rate, double h) {
   constexpr double kMargin = 0.8;
   const double largest = gains.stiffness.maxCoeff();
-  const ImpedanceGains pattern{gains.stiffness, gains.stiffness / largest};  // so that no stiffness overflows
+  const ImpedanceGains pattern{gains.stiffness, gains.stiffness / largest};
   double per_damping = 0.0;
   for (const Eigen::VectorXd& q : postures)
     per_damping = std::max(per_damping, dampingRate(pattern, inertia(model, q)));
@@ -159,8 +168,10 @@ std::vector<Eigen::VectorXd> judgedPostures(const RobotDescription& arm) {
 
 ImpedanceGains impedanceGains(const RobotDescription& arm, const std::vector<double>& stiffness,
                               const std::vector<double>& damping, const ImpedanceGains& defaults) {
-  return {perJoint(arm, "stiffness", stiffness, defaults.stiffness, stiffnessUnit),
-          perJoint(arm, "damping", damping, defaults.damping, dampingUnit)};
+  ImpedanceGains gains{perJoint(arm, "stiffness", stiffness, defaults.stiffness),
+                       perJoint(arm, "damping", damping, defaults.damping)};
+  requireRange(arm, gains);
+  return gains;
 }
 
 ImpedanceGains defaultImpedanceGains(const RobotDescription& arm, double control_period) {
@@ -193,6 +204,7 @@ ImpedanceGains defaultImpedanceGains(const RobotDescription& arm, double control
 
 void requireStable(const ImpedanceGains& gains, const RobotDescription& arm, double control_period,
                    const Eigen::VectorXd& also) {
+  requireRange(arm, gains);
   const double h = control_period;
   const RobotModel model(arm);
   std::vector<Eigen::VectorXd> postures = judgedPostures(arm);
@@ -204,15 +216,16 @@ void requireStable(const ImpedanceGains& gains, const RobotDescription& arm, dou
   for (const Eigen::VectorXd& q : postures) {
     const Eigen::MatrixXd M = inertia(model, q);
     const double here = dampingRate(gains, M);
-    if (here > rate) {
+    if (!(here <= rate)) {
       rate = here;
       worst = worstDamped(gains, M);
     }
+    if (std::isnan(rate)) break;  // of masses that cannot be reckoned with: refused
     if (enough || rate > 1.0 / h) continue;
     const ImpedanceStability stability = judgeStability(gains, M, h);
     if (!stability.stable) radius = std::max(radius, stability.spectral_radius);
   }
-  if (rate > 1.0 / h) refuseDamping(gains, arm, worst, rate, h);
+  if (!(rate <= 1.0 / h)) refuseDamping(gains, arm, worst, rate, h);
   if (radius > 0.0) refuseStiffness(gains, arm, radius, dampableShare(gains, model, postures, rate, h), h);
 }
 

@@ -5,21 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "demo_logger/trajectory/error.h"
-
 namespace demo_logger {
 namespace {
 
 Eigen::VectorXd one(double value) { return Eigen::VectorXd::Constant(1, value); }
-
-std::string messageOf(const ImpedanceGains& gains, Eigen::Index joints) {
-  try {
-    validate(gains, joints);
-  } catch (const ConfigurationError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 /// Largest |δ| that a loop of one joint reaches late, simulated period by period.
 double lateAmplitude(double inertia, double stiffness, double damping, double h) {
@@ -85,15 +74,6 @@ TEST(ImpedanceStabilityTest, ABoundJointByJointWouldMissWhatTheJointsDoToEachOth
   EXPECT_FALSE(stability.stable);
   EXPECT_GT(stability.damping_rate, 5.0 / (0.01 - 0.009025) - 1e-9)
       << "more than the light joint's effective inertia says";
-}
-
-TEST(ImpedanceTest, GainsThatMakeNoSenseAreNamed) {
-  EXPECT_EQ(messageOf({one(-1.0), one(1.0)}, 1),
-            "impedance: stiffness of joint 1 is -1 N m/rad, expected a number of at least 0.");
-  EXPECT_EQ(messageOf({one(1.0), one(std::numeric_limits<double>::infinity())}, 1),
-            "impedance: damping of joint 1 is inf N m s/rad, expected a number of at least 0.");
-  EXPECT_EQ(messageOf({one(1.0), one(1.0)}, 7),
-            "impedance: stiffness has 1 values, expected one for each of 7 joints.");
 }
 
 }  // namespace

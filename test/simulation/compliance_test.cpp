@@ -57,13 +57,27 @@ TEST(ComplianceTest, GainsThatMakeNoSenseAreNamed) {
   EXPECT_EQ(messageOf([&] {
               impedanceGains(arm, {}, {1, 1, -0.5, 1, 1, 1, 1}, {});
             }),
-            "impedance: damping of joint_3 is -0.5 N m s/rad, expected a number of at least 0.");
+            "impedance: damping of joint_3 is -0.5 N m s/rad, expected a number from 0 to 1e+09 N m s/rad.");
   EXPECT_EQ(messageOf([&] { impedanceGains(arm, {std::numeric_limits<double>::infinity()}, {}, {}); }),
-            "impedance: stiffness of joint_1 is inf N m/rad, expected a number of at least 0.");
+            "impedance: stiffness of joint_1 is inf N m/rad, expected a number from 0 to 1e+09 N m/rad.");
   RobotDescription slide = makePendulum();
   slide.joints[0].type = JointType::prismatic;
   EXPECT_EQ(messageOf([&] { impedanceGains(slide, {-1.0}, {}, {}); }),
-            "impedance: stiffness of hinge is -1 N/m, expected a number of at least 0.");
+            "impedance: stiffness of hinge is -1 N/m, expected a number from 0 to 1e+09 N/m.");
+}
+
+TEST(ComplianceTest, GainsTooLargeToReckonWithAreRefusedNotLetThrough) {
+  const RobotDescription arm = describeDemoArm();
+  const double h = kPeriod;
+  for (const double gain : {1e10, 1e154, 1e306, 1e308, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(impedanceGains(arm, {gain}, {gain}, {}), ConfigurationError) << gain;
+    EXPECT_THROW(requireStable({seven(gain), seven(gain)}, arm, h), ConfigurationError) << gain;
+    EXPECT_THROW(requireStable({seven(0.0), seven(gain)}, arm, h), ConfigurationError) << gain;
+  }
+  EXPECT_EQ(judged(arm, {seven(50.0), seven(1e308)}),
+            "impedance: damping of joint_1 is 1e+308 N m s/rad, expected a number from 0 to 1e+09 N m s/rad.");
+  EXPECT_THROW(requireStable({seven(kLargestGain), seven(kLargestGain)}, arm, h), ConfigurationError)
+      << "within the range, and far from stable";
 }
 
 TEST(ComplianceTest, TheBoundOfAPendulumIsItsInertiaOverThePeriod) {
@@ -130,7 +144,7 @@ double adviceIn(const std::string& message, const std::string& key, double other
 TEST(ComplianceTest, AdviceOnAStiffnessIsTakenIfItIsFollowed) {
   const RobotDescription arm = describeDemoArm();
   const ImpedanceGains defaults = defaultImpedanceGains(arm, kPeriod);
-  for (const double stiffness : {2000.0, 1e4, 1e7, 1e300}) {
+  for (const double stiffness : {2000.0, 1e4, 1e7, kLargestGain}) {
     for (const std::vector<double>& damping : {std::vector<double>{}, {0.0}, {1e-9}, {0.9}}) {
       const std::string refusal = judged(arm, impedanceGains(arm, {stiffness}, damping, defaults));
       if (refusal == "taken") continue;

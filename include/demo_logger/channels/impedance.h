@@ -30,8 +30,4 @@ struct ImpedanceStability {
 /// A bound joint by joint is not enough: M⁻¹ couples them, and a light joint behind a heavy one is the first to go.
 ImpedanceStability judgeStability(const ImpedanceGains& gains, const Eigen::MatrixXd& M, double h);
 
-/// Throws ConfigurationError naming the joint's number, the value and what was expected: gains that are negative, not
-/// finite, or not one per joint.
-void validate(const ImpedanceGains& gains, Eigen::Index joints);
-
 }  // namespace demo_logger

@@ -14,6 +14,10 @@ namespace demo_logger {
 constexpr int kJudgedPostures = 512;
 std::vector<Eigen::VectorXd> judgedPostures(const RobotDescription& arm);
 
+/// The largest stiffness [N m/rad or N/m] and damping [N m s/rad or N s/m] that are considered: far beyond any arm, far
+/// within what can be reckoned with.
+constexpr double kLargestGain = 1e9;
+
 /// The gains of one who asks for `stiffness` and `damping`: each one value per joint, one for all of them, or none,
 /// which means that of `defaults`. Throws ConfigurationError naming the joint, the value with its unit and what was
 /// expected.
@@ -25,11 +29,12 @@ ImpedanceGains impedanceGains(const RobotDescription& arm, const std::vector<dou
 /// damping 0.7 of the critical, less if the held loop asks for it. Always stable (requireStable).
 ImpedanceGains defaultImpedanceGains(const RobotDescription& arm, double control_period);
 
-/// Refuses gains with which a torque held for h = `control_period` [s] makes the arm unstable (judgeStability) at any
-/// of judgedPostures() or at `also`, where it stands, if that is not empty. M counts the motors' inertia, not the
-/// arm's own friction, which may only help. Throws ConfigurationError with the joint, the value, the bound and what to
-/// try: too much damping beyond λmax(M⁻¹ K_d) ≤ 1/h, or too little for the stiffness. K_d ≥ h K_p / 2 joint by joint is
-/// always enough: a spring held for h pushes h/2 late, as much as a damper of −h K_p / 2.
+/// Refuses gains that are not from 0 to kLargestGain, and those with which a torque held for h = `control_period` [s]
+/// makes the arm unstable (judgeStability) at any of judgedPostures() or at `also`, where it stands, if that is not
+/// empty. M counts the motors' inertia, not the arm's own friction, which may only help. Throws ConfigurationError with
+/// the joint, the value, the bound and what to try: too much damping beyond λmax(M⁻¹ K_d) ≤ 1/h, or too little for the
+/// stiffness. K_d ≥ h K_p / 2 joint by joint is always enough: a spring held for h pushes h/2 late, as much as a damper
+/// of −h K_p / 2.
 void requireStable(const ImpedanceGains& gains, const RobotDescription& arm, double control_period,
                    const Eigen::VectorXd& also = {});
 
