@@ -60,7 +60,7 @@ recorded=$(comm -13 <(echo "$before") <(find "$demos" -maxdepth 1 -name 'demo_??
 demo_tool info "$recorded"
 status=0
 demo_tool check "$recorded" || status=$?
-picture=$("$project/scripts/draw_demonstration.py" "$recorded")
+picture=$("$project/scripts/draw_demonstration.py" "$recorded" --force)
 files="$recorded, ${recorded%.csv}.json, $picture"
 if [ "$channel" = kinesthetic ]; then
   taught=${recorded%.csv}_taught.csv
@@ -69,7 +69,7 @@ if [ "$channel" = kinesthetic ]; then
     --tip tool_tip || found=$?
   [ "$found" -le 1 ] || exit "$found"  # 1: done, with findings
   [ "$status" -ne 0 ] || status=$found
-  files+=", $taught, $("$project/scripts/draw_human_torque.py" "$taught" --live "$recorded")"
+  files+=", $taught, $("$project/scripts/draw_human_torque.py" "$taught" --live "$recorded" --force)"
 fi
 echo "Files: $files"
 exit $status

@@ -2,6 +2,7 @@
 """Draws one recorded demonstration: its joints, its commands and the path of the tool."""
 
 import argparse
+import io
 import json
 import os
 import sys
@@ -168,9 +169,32 @@ def draw_tool_path(figure, place, demonstration):
         axes.set_title(view, fontsize=9, color=TEXT)
 
 
+def add_output_options(parser):
+    parser.add_argument("-o", "--output", help="PNG, SVG or PDF, by its ending (PNG without one); default: beside the "
+                        "CSV, .png")
+    parser.add_argument("--force", action="store_true", help="overwrite a picture that is there; else it is refused")
+
+
+def output_of(arguments):
+    """Where the picture goes. Throws ValueError if something is there that must stay."""
+    output = arguments.output or os.path.splitext(arguments.csv)[0] + ".png"
+    if os.path.isfile(output) and os.path.samefile(output, arguments.csv):
+        raise ValueError(f"{output}: is the recording itself, expected another name for its picture")
+    if os.path.isfile(output) and not arguments.force:
+        raise ValueError(f"{output}: exists already and is not overwritten; choose another name, or add --force")
+    return output
+
+
 def save(figure, output, dpi):
+    """Under this very name, once the whole picture is there."""
+    picture = io.BytesIO()
+    kind = os.path.splitext(output)[1][1:].lower() or "png"
+    if kind not in figure.canvas.get_supported_filetypes():
+        raise ValueError(f"{output}: no kind of picture ends in .{kind}, expected .png, .svg or .pdf")
+    figure.savefig(picture, format=kind, dpi=dpi, facecolor="white")
     try:
-        figure.savefig(output, dpi=dpi, facecolor="white")
+        with open(output, "wb") as file:
+            file.write(picture.getbuffer())
     except OSError as error:
         raise ValueError(f"{output}: cannot be written: {error.strerror}") from None
 
@@ -218,10 +242,10 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, epilog="example: rosrun demo_logger draw_demonstration.py demos/demo_000001.csv -o demo.png")
     parser.add_argument("csv", help="a demonstration; its sidecar .json beside it is used where it exists")
-    parser.add_argument("-o", "--output", help="PNG, SVG or PDF; default: beside the CSV, .png")
+    add_output_options(parser)
     arguments = parser.parse_args()
     try:
-        output = arguments.output or os.path.splitext(arguments.csv)[0] + ".png"
+        output = output_of(arguments)
         draw(Demonstration(arguments.csv), output)
     except ValueError as error:
         print(f"draw_demonstration.py: {error}", file=sys.stderr)

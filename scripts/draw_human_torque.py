@@ -3,10 +3,9 @@
 the truth (columns truth_<joint>, of a simulated arm) and what an observer said as it happened."""
 
 import argparse
-import os
 import sys
 
-from draw_demonstration import TEXT, Demonstration, np, plt, save, style
+from draw_demonstration import TEXT, Demonstration, add_output_options, np, output_of, plt, save, style
 
 TRUE = "#b9b9b9"
 RECOVERED = "#c8371b"
@@ -78,17 +77,33 @@ def joints_of(demonstration):
     return [name[len("tau_h_"):] for name in known]
 
 
-def require_same_arm(taught, live):
+def require_same_recording(taught, live):
+    """What was measured stays as it was in what is made of a recording."""
     joints, others = ([name[len("q_"):] for name in one.joint_columns("q_")] for one in (taught, live))
     if set(joints) != set(others):
         raise ValueError(f"{live.path}: joints {', '.join(others) or 'none'}, expected those of {taught.path}, "
                          f"{', '.join(joints) or 'none'}, which --live is the recording of")
+    parent = taught.metadata.get("provenance", {}).get("parent")
+    expected = f"{taught.path}, which was made of {parent}" if parent else f"{taught.path}, which it is the recording of"
+    _, rows, live_rows = np.intersect1d(taught.time, live.time, return_indices=True)
+    if not len(rows):
+        raise ValueError(f"--live {live.path}: {live.time[0]:g} to {live.time[-1]:g} s, none of them a time of {expected}")
+    measured = taught.joint_columns("q_") + taught.joint_columns("tau_")
+    for name in measured:
+        if name not in live.values or name.startswith("tau_h_"):
+            continue
+        here, there = taught.values[name][rows], live.values[name][live_rows]
+        differing = np.flatnonzero(~np.isclose(here, there, rtol=1e-9, atol=1e-12, equal_nan=True))
+        if len(differing):
+            row = differing[0]
+            raise ValueError(f"--live {live.path}: {name} is {there[row]:.6g} at {taught.time[rows[row]]:g} s, expected "
+                             f"{here[row]:.6g} as in {expected}")
 
 
 def draw(taught, live, output):
     joints = joints_of(taught)
     if live is not None:
-        require_same_arm(taught, live)
+        require_same_recording(taught, live)
     rows = len(joints) // 2 + 1
     figure, grid = plt.subplots(rows, 2, figsize=(11.0, 0.7 + 1.75 * rows), sharex=True, layout="constrained")
     panels = grid.T.flatten()
@@ -110,10 +125,10 @@ def main():
         epilog="example: rosrun demo_logger draw_human_torque.py taught.csv --live demos/demo_000001.csv -o torque.png")
     parser.add_argument("csv", help="a demonstration with columns tau_h_<joint>, as `demo_tool torque` writes it")
     parser.add_argument("--live", help="the recording it was made of, whose tau_h_<joint> are those of the observer")
-    parser.add_argument("-o", "--output", help="PNG, SVG or PDF; default: beside the CSV, .png")
+    add_output_options(parser)
     arguments = parser.parse_args()
     try:
-        output = arguments.output or os.path.splitext(arguments.csv)[0] + ".png"
+        output = output_of(arguments)
         live = Demonstration(arguments.live) if arguments.live else None
         draw(Demonstration(arguments.csv), live, output)
     except ValueError as error:
