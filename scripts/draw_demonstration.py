@@ -23,6 +23,8 @@ TEXT = "#333333"
 
 def read_text(path):
     """Throws ValueError in one sentence that names the file."""
+    if os.path.exists(path) and not os.path.isfile(path):  # a device or a pipe may never end
+        raise ValueError(f"{path}: is no regular file; is it a demonstration?")
     try:
         with open(path, encoding="utf-8") as file:
             return file.read()

@@ -1,7 +1,6 @@
 #include "line_reader.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,6 +8,7 @@
 #include <system_error>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/regular_file.h"
 
 namespace demo_logger {
 namespace {
@@ -20,18 +20,20 @@ FileError unreadable(const std::filesystem::path& file, int error) {
                    "); expected a CSV file that exists and may be read.");
 }
 
-}  // namespace
-
-LineReader::LineReader(const std::filesystem::path& file)
-    : file_(file), descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
-  if (descriptor_ < 0) {
+int openTable(const std::filesystem::path& file) {
+  std::error_code status;
+  const bool is_directory = std::filesystem::is_directory(file, status);
+  requireRegularFile(file, std::string("a CSV file.") + (is_directory ? " Name one of the files in it." : ""));
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
     throw unreadable(file, errno);
   }
-  struct stat status = {};
-  if (fstat(descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) {
-    close(descriptor_);
-    throw FileError(file.string() + ": is a directory, expected a CSV file. Name one of the files in it.");
-  }
+  return descriptor;
+}
+
+}  // namespace
+
+LineReader::LineReader(const std::filesystem::path& file) : file_(file), descriptor_(openTable(file)) {
   buffer_.resize(kFirstBufferSize);
 }
 

@@ -7,6 +7,7 @@
 
 #include "demo_logger/formats/atomic_file.h"
 #include "demo_logger/formats/column_conventions.h"
+#include "demo_logger/trajectory/regular_file.h"
 #include "json_fields.h"
 
 namespace demo_logger {
@@ -282,9 +283,7 @@ Sidecar parseSidecar(std::string_view text, const std::string& file) {
 
 Sidecar readSidecar(const std::filesystem::path& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path)) {
-    throw FileError(path.string() + ": is a directory, expected the JSON file beside a demonstration's CSV.");
-  }
+  requireRegularFile(path, "the JSON file beside a demonstration's CSV.");
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     throw FileError(path.string() +

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/regular_file.h"
 #include "src/nodes/arm_commands.h"
 
 namespace demo_logger {
@@ -34,6 +35,7 @@ void sleepUntil(Nanoseconds steady) {
 }
 
 std::string readFile(const std::string& path) {
+  requireRegularFile(path, "what ~save_state wrote, as initial_state names it.");
   std::ifstream file(path);
   std::stringstream text;
   text << file.rdbuf();

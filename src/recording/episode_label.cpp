@@ -11,6 +11,7 @@
 #include "demo_logger/formats/atomic_file.h"
 #include "demo_logger/formats/sidecar.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/regular_file.h"
 #include "episode_name.h"
 #include "file_system.h"
 #include "sidecar_edit.h"
@@ -53,6 +54,7 @@ void requireFinishedEpisode(const std::filesystem::path& directory, const std::s
 }
 
 void setSidecarTexts(const std::filesystem::path& sidecar, const std::map<std::string, std::string>& texts) {
+  requireRegularFile(sidecar, "the JSON file where the label is kept.");
   std::ifstream stream(sidecar, std::ios::binary);
   if (!stream) {
     throw FileError(sidecar.string() + " cannot be read; it is where the label is kept.");

@@ -12,6 +12,7 @@
 
 #include "body_inertia.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/regular_file.h"
 #include "demo_logger/trajectory/print.h"
 #include "joint_named.h"
 #include "locked_joints.h"
@@ -222,8 +223,9 @@ RobotDescription describeRobotFile(const std::string& path, const DescriptionOpt
   if (!std::filesystem::exists(path, status)) {
     throw FileError(path + ": no such file, expected a robot description (URDF)");
   }
+  requireRegularFile(path, "a robot description (URDF)");
   std::ifstream file(path, std::ios::binary);
-  if (std::filesystem::is_directory(path, status) || !file) {
+  if (!file) {
     throw FileError(path + ": cannot be read, expected a robot description (URDF)");
   }
   const std::string urdf_xml{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

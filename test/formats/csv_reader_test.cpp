@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -289,6 +290,24 @@ TEST(CsvReaderTest, AHeaderOfManyMegabytesIsRefused) {
   EXPECT_EQ(errorOf(std::string(2U << 20U, 'x')),
             "reach_07.csv:1: the first line is longer than 1 MB, expected a header line of column names. Is this a CSV "
             "file?");
+}
+
+TEST(CsvReaderTest, WhatNeverEndsOrNeverBeginsIsNamedInsteadOfReadOrWaitedFor) {
+  const TemporaryFolder folder;
+  const std::filesystem::path endless = folder.path() / "endless.csv";
+  const std::filesystem::path pipe = folder.path() / "pipe.csv";
+  std::filesystem::create_symlink("/dev/zero", endless);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const auto refusalOf = [](const std::filesystem::path& file) -> std::string {
+    try {
+      readAll(file);
+    } catch (const FileError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_EQ(refusalOf(endless), endless.string() + ": is a device, expected a CSV file.");
+  EXPECT_EQ(refusalOf(pipe), pipe.string() + ": is a pipe, expected a CSV file.");
 }
 
 TEST(CsvReaderTest, DirectoriesAndMissingFilesAreNamed) {

@@ -212,14 +212,18 @@ TEST(SidecarTest, DeepNestingIsRefusedBeforeItExhaustsTheStack) {
             "demo_000007.json: is nested more than 64 levels deep; expected the sidecar of a demonstration.");
 }
 
-TEST(SidecarTest, AMissingFileAndADirectoryAreNamed) {
-  EXPECT_THROW(readSidecar("/nonexistent/demo.json"), FileError);
-  try {
-    readSidecar("/tmp");
-    FAIL();
-  } catch (const FileError& error) {
-    EXPECT_STREQ(error.what(), "/tmp: is a directory, expected the JSON file beside a demonstration's CSV.");
-  }
+TEST(SidecarTest, AMissingFileADirectoryAndWhatNeverEndsAreNamed) {
+  const auto refusalOf = [](const std::filesystem::path& path) -> std::string {
+    try {
+      readSidecar(path);
+    } catch (const FileError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_NE(refusalOf("/nonexistent/demo.json"), "taken");
+  EXPECT_EQ(refusalOf("/tmp"), "/tmp: is a directory, expected the JSON file beside a demonstration's CSV.");
+  EXPECT_EQ(refusalOf("/dev/zero"), "/dev/zero: is a device, expected the JSON file beside a demonstration's CSV.");
 }
 
 TEST(SidecarTest, StandsBesideItsCsv) {

@@ -38,6 +38,8 @@ expect 0 "bare" taught.csv -o bare
 head -c 4 "$folder/bare" | grep -q PNG || { echo "bare: is no PNG, or is not there"; failed=1; }
 expect 2 "$refused absent.csv: cannot be read: No such file or directory" absent.csv
 expect 2 "$refused picture.csv: no text, byte 0 is not UTF-8; is it a demonstration?" picture.csv
+ln -s /dev/zero "$folder/endless.csv"
+expect 2 "$refused endless.csv: is no regular file; is it a demonstration?" endless.csv
 expect 2 "$refused torn.json: no JSON: Expecting value: line 2 column 1 (char 7)" torn.csv
 expect 2 "$refused absent/taught.png: cannot be written: No such file or directory" taught.csv -o absent/taught.png
 expect 2 "$refused plain.csv: no column tau_h_<joint> to draw; \`demo_tool torque\` adds them" plain.csv

@@ -72,7 +72,7 @@ TEST(UrdfFaultsTest, AFileThatIsNotThereOrNotAFile) {
             "/nonexistent/arm.urdf: no such file, expected a robot description (URDF)");
   const std::string folder = std::filesystem::temp_directory_path();
   EXPECT_EQ(sentenceOf([&] { describeRobotFile(folder, {}); }),
-            folder + ": cannot be read, expected a robot description (URDF)");
+            folder + ": is a directory, expected a robot description (URDF)");
   EXPECT_THROW(describeRobotFile("/nonexistent/arm.urdf", {}), FileError);
 }
 
