@@ -15,16 +15,19 @@ namespace {
 constexpr const char* kFormat = "demo_logger_model/1";
 constexpr const char* kDeviation = "_deviation";
 
-const StrictYaml::Range kAnyNumber = {};
-const StrictYaml::Range kNotNegative = {0.0, 1e9, "a number of 0 or more"};
-const StrictYaml::Range kPositive = {1e-9, 1e9, "a number above 0"};
+const StrictYaml::Range kTorque = {-1e6, 1e6, "a number from -1000000 to 1000000 [N m or N]"};
+const StrictYaml::Range kFriction = {0.0, 1e6, "a number from 0 to 1000000 [N m or N]"};
+const StrictYaml::Range kDamping = {0.0, 1e6, "a number from 0 to 1000000 [N m s/rad or N s/m]"};
+const StrictYaml::Range kFrictionVelocity = {1e-9, 1000.0, "a number above 0, up to 1000 [rad/s or m/s]"};
+const StrictYaml::Range kMotorInertia = {0.0, 1e5, "a number from 0 to 100000 [kg m² or kg]"};
+const StrictYaml::Range kDeviationOfAny = {0.0, 1e9, "a number from 0 to 1000000000"};
 const StrictYaml::Range kMass = {-1000.0, 1000.0, "a number from -1000 to 1000 [kg]"};
 const StrictYaml::Range kBodyMass = {1e-9, 1000.0, "a number above 0, up to 1000 [kg]"};
 const StrictYaml::Range kCenter = {-10.0, 10.0, "a number from -10 to 10 [m]"};
 const StrictYaml::Range kInertia = {-1e5, 1e5, "a number from -100000 to 100000 [kg m²]"};
 
 CalibratedValue readValue(const StrictYaml& yaml, const std::string& key, const StrictYaml::Range& range) {
-  return {yaml.number(key, range), yaml.has(key + kDeviation) ? yaml.number(key + kDeviation, kNotNegative) : 0.0};
+  return {yaml.number(key, range), yaml.has(key + kDeviation) ? yaml.number(key + kDeviation, kDeviationOfAny) : 0.0};
 }
 
 std::optional<CalibratedValue> readIfThere(const StrictYaml& yaml, const std::string& key,
@@ -39,7 +42,7 @@ void readValues(const StrictYaml& yaml, const std::string& key, const StrictYaml
                 std::array<CalibratedValue, count>& values) {
   const std::vector<double> numbers = yaml.numbers(key, count, range);
   std::vector<double> deviations(count, 0.0);
-  if (yaml.has(key + kDeviation)) deviations = yaml.numbers(key + kDeviation, count, kNotNegative);
+  if (yaml.has(key + kDeviation)) deviations = yaml.numbers(key + kDeviation, count, kDeviationOfAny);
   for (std::size_t i = 0; i < count; ++i) values[i] = {numbers[i], deviations[i]};
 }
 
@@ -56,11 +59,11 @@ JointCalibration readJoint(const StrictYaml& yaml) {
   yaml.allow({"torque_bias", "torque_bias_deviation", "damping", "damping_deviation", "friction", "friction_deviation",
               "friction_velocity", "motor_inertia", "motor_inertia_deviation"});
   JointCalibration joint;
-  joint.torque_bias = readIfThere(yaml, "torque_bias", kAnyNumber);
-  joint.damping = readIfThere(yaml, "damping", kNotNegative);
-  joint.friction = readIfThere(yaml, "friction", kNotNegative);
-  if (yaml.has("friction_velocity")) joint.friction_velocity = yaml.number("friction_velocity", kPositive);
-  joint.motor_inertia = readIfThere(yaml, "motor_inertia", kNotNegative);
+  joint.torque_bias = readIfThere(yaml, "torque_bias", kTorque);
+  joint.damping = readIfThere(yaml, "damping", kDamping);
+  joint.friction = readIfThere(yaml, "friction", kFriction);
+  if (yaml.has("friction_velocity")) joint.friction_velocity = yaml.number("friction_velocity", kFrictionVelocity);
+  joint.motor_inertia = readIfThere(yaml, "motor_inertia", kMotorInertia);
   return joint;
 }
 

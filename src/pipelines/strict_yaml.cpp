@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/regular_file.h"
 
 namespace demo_logger {
 namespace {
@@ -37,14 +38,22 @@ std::string shown(const YAML::Node& node) {
 }  // namespace
 
 StrictYaml::StrictYaml(std::string file, std::string prefix, const YAML::Node& node)
-    : file_(std::move(file)), prefix_(std::move(prefix)), node_(node) {}
+    : file_(std::move(file)), prefix_(std::move(prefix)), line_(node.Mark().line + 1) {
+  for (const auto& entry : node) {
+    const std::string place = file_ + ":" + std::to_string(entry.first.Mark().line + 1) + ": ";
+    if (!entry.first.IsScalar()) throw FileError(place + "a key is " + shown(entry.first) + ", expected a word.");
+    const std::string& key = entry.first.Scalar();
+    if (!values_.emplace(key, entry.second).second) {
+      throw FileError(place + prefix_ + key + " is there twice, expected once.");
+    }
+    keys_.push_back(key);
+  }
+}
 
 StrictYaml StrictYaml::read(const std::string& path) {
   std::error_code status;
   if (!std::filesystem::exists(path, status)) throw FileError(path + ": no such file, expected a model (YAML)");
-  if (!std::filesystem::is_regular_file(path, status)) {  // a pipe or a device may never end
-    throw FileError(path + ": cannot be read, as it is no regular file, expected a model (YAML)");
-  }
+  requireRegularFile(path, "a model (YAML)");
   if (std::filesystem::file_size(path, status) > kLargestFile) {
     throw FileError(path + ": is larger than 1 MB, expected a model (YAML)");
   }
@@ -70,37 +79,19 @@ void StrictYaml::refuse(const YAML::Node& node, const std::string& key, const st
                   ", expected " + expected + ".");
 }
 
-std::vector<std::string> StrictYaml::keys() const {
-  std::vector<std::string> names;
-  for (const auto& entry : node_) {
-    if (!entry.first.IsScalar()) {
-      throw FileError(file_ + ":" + std::to_string(entry.first.Mark().line + 1) + ": a key is " + shown(entry.first) +
-                      ", expected a word.");
-    }
-    const std::string key = entry.first.Scalar();
-    if (std::find(names.begin(), names.end(), key) != names.end()) {
-      throw FileError(file_ + ":" + std::to_string(entry.first.Mark().line + 1) + ": " + prefix_ + key +
-                      " is there twice, expected once.");
-    }
-    names.push_back(key);
-  }
-  return names;
-}
-
 void StrictYaml::allow(const std::vector<std::string>& keys_allowed) const {
-  for (const std::string& key : keys()) {
+  for (const std::string& key : keys_) {
     if (std::find(keys_allowed.begin(), keys_allowed.end(), key) != keys_allowed.end()) continue;
-    throw FileError(file_ + ":" + std::to_string(node_[key].Mark().line + 1) + ": " + prefix_ + key +
+    throw FileError(file_ + ":" + std::to_string(values_.at(key).Mark().line + 1) + ": " + prefix_ + key +
                     " is not known here, expected " + listed(keys_allowed) + ".");
   }
 }
 
-bool StrictYaml::has(const std::string& key) const { return node_[key].IsDefined(); }
+bool StrictYaml::has(const std::string& key) const { return values_.count(key) > 0; }
 
 YAML::Node StrictYaml::required(const std::string& key) const {
-  if (has(key)) return node_[key];
-  throw FileError(file_ + ":" + std::to_string(node_.Mark().line + 1) + ": " + prefix_ + key +
-                  " is missing, expected it here.");
+  if (const auto found = values_.find(key); found != values_.end()) return found->second;
+  throw FileError(file_ + ":" + std::to_string(line_) + ": " + prefix_ + key + " is missing, expected it here.");
 }
 
 StrictYaml StrictYaml::mapping(const std::string& key) const {

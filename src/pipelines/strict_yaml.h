@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace demo_logger {
@@ -15,9 +16,9 @@ class StrictYaml {
   /// The mapping at the top of the file. Throws FileError if it cannot be read, or is none.
   static StrictYaml read(const std::string& path);
 
-  /// Refuses keys that are repeated, or not among those.
+  /// Refuses keys that are not among those.
   void allow(const std::vector<std::string>& keys) const;
-  std::vector<std::string> keys() const;
+  const std::vector<std::string>& keys() const { return keys_; }  // as they stand in the file
 
   bool has(const std::string& key) const;
   StrictYaml mapping(const std::string& key) const;
@@ -33,6 +34,7 @@ class StrictYaml {
   std::vector<double> numbers(const std::string& key, std::size_t count, const Range& range) const;
 
  private:
+  /// Refuses keys that are repeated, or no words.
   StrictYaml(std::string file, std::string prefix, const YAML::Node& node);
   /// Refuses a key that is not there.
   YAML::Node required(const std::string& key) const;
@@ -41,7 +43,9 @@ class StrictYaml {
 
   std::string file_;
   std::string prefix_;  // "joints.elbow." of the full key
-  YAML::Node node_;
+  int line_ = 0;
+  std::vector<std::string> keys_;
+  std::unordered_map<std::string, YAML::Node> values_;  // found at once, where YAML::Node looks at all keys
 };
 
 }  // namespace demo_logger

@@ -41,9 +41,11 @@ class ModelFile {
     return text.str();
   }
 
+  void write(const std::string& text) const { std::ofstream(path()) << text; }
+
   /// What is said of such a file, with the folder taken away.
   std::string refusalOf(const std::string& text) const {
-    std::ofstream(path()) << text;
+    write(text);
     try {
       readModelCalibration(path());
     } catch (const FileError& error) {
@@ -116,10 +118,11 @@ TEST(ModelCalibrationTest, WhatIsWrongInAFileIsSaidWithFileLineKeyAndValue) {
             "model.yaml:3: payload.center is a list of 2, expected a list of 3 numbers.");
   EXPECT_EQ(file.refusalOf("payload:\n  mass: 1\n  center: [0, 0, 70]\n"),
             "model.yaml:3: payload.center[2] is \"70\", expected a number from -10 to 10 [m].");
-  EXPECT_EQ(file.refusalOf("joints:\n  joint_1: {damping: -1}\n"),
-            "model.yaml:2: joints.joint_1.damping is \"-1\", expected a number of 0 or more.");
+  EXPECT_EQ(
+      file.refusalOf("joints:\n  joint_1: {damping: -1}\n"),
+      "model.yaml:2: joints.joint_1.damping is \"-1\", expected a number from 0 to 1000000 [N m s/rad or N s/m].");
   EXPECT_EQ(file.refusalOf("joints:\n  joint_1: {friction: .nan}\n"),
-            "model.yaml:2: joints.joint_1.friction is \".nan\", expected a number of 0 or more.");
+            "model.yaml:2: joints.joint_1.friction is \".nan\", expected a number from 0 to 1000000 [N m or N].");
   EXPECT_EQ(file.refusalOf("joints:\n  joint_1: {damping_deviation: 1}\n"),
             "model.yaml:2: joints.joint_1.damping is missing, expected it here.");
   EXPECT_EQ(file.refusalOf("joints: [1]\n"),
@@ -133,6 +136,33 @@ TEST(ModelCalibrationTest, WhatIsWrongInAFileIsSaidWithFileLineKeyAndValue) {
   EXPECT_EQ(file.refusalOf("just text"), "model.yaml: holds \"just text\", expected a mapping of keys to values");
   EXPECT_EQ(file.refusalOf("tip: [\n").rfind("model.yaml:2: is not YAML: ", 0), 0U);
   EXPECT_THROW(readModelCalibration(file.path().string() + ".none"), FileError);
+}
+
+TEST(ModelCalibrationTest, NumbersThatNoArmHasAreRefusedAllOfThem) {
+  const ModelFile file;
+  const auto refusalOf = [&file](const std::string& key_and_value) {
+    return file.refusalOf("joints:\n  elbow: {" + key_and_value + "}\n");
+  };
+  const std::string place = "model.yaml:2: joints.elbow.";
+  EXPECT_EQ(refusalOf("torque_bias: 1e300"),
+            place + "torque_bias is \"1e300\", expected a number from -1000000 to 1000000 [N m or N].");
+  EXPECT_EQ(refusalOf("torque_bias: 0, torque_bias_deviation: 1e300"),
+            place + "torque_bias_deviation is \"1e300\", expected a number from 0 to 1000000000.");
+  EXPECT_EQ(refusalOf("friction_velocity: 1e300"),
+            place + "friction_velocity is \"1e300\", expected a number above 0, up to 1000 [rad/s or m/s].");
+  EXPECT_EQ(refusalOf("motor_inertia: 1e300"),
+            place + "motor_inertia is \"1e300\", expected a number from 0 to 100000 [kg m² or kg].");
+}
+
+TEST(ModelCalibrationTest, AFullFileIsReadInTimeInProportionToIt) {
+  const ModelFile file;  // where each key is compared with all others, this is one that nobody waits for
+  std::string text = "format: demo_logger_model/1\njoints:\n";
+  std::size_t joints = 0;
+  while (text.size() < 980000) text += "  j" + std::to_string(joints++) + ": {}\n";
+  file.write(text);
+  EXPECT_EQ(readModelCalibration(file.path()).joints.size(), joints);
+  EXPECT_EQ(file.refusalOf(text.substr(text.find("joints")) + "  j7: {}\n"),
+            "model.yaml:" + std::to_string(joints + 2) + ": joints.j7 is there twice, expected once.");
 }
 
 TEST(ModelCalibrationTest, WhatIsNoSingleModelOfItsFormatIsRefused) {
