@@ -1,6 +1,5 @@
 #include "fit_findings.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -13,11 +12,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kTold = 0.7;          // of the deviation before the data; what stays above it the data do not tell
-constexpr double kSignificant = 13.3;  // χ² of four values that are zero exceeds it once in a hundred times
-constexpr double kDoubtful = 3.0;      // deviations that a mass may be moved
-constexpr double kNearest = 0.3;       // [m] a centre of mass with a mass that is not told is put that near
-
 /// "0.301 ± 0.004": digits as the deviation has sense for.
 std::string withDeviation(double value, double deviation) {
   const int decimals = deviation > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(deviation))), 0, 6) : 6;
@@ -26,35 +20,45 @@ std::string withDeviation(double value, double deviation) {
 
 class Findings {
  public:
-  Findings(const FitProblem& problem, const RidgeEstimate& estimate, FitResult& result)
-      : problem_(problem), estimate_(estimate), result_(result) {}
+  Findings(const FitProblem& problem, const RidgeEstimate& estimate, const FitDecisions& decisions, FitResult& result)
+      : problem_(problem), estimate_(estimate), decisions_(decisions), result_(result) {}
 
   void describePayload() {
+    const CalibratedValue& seen = decisions_.seen_mass;
+    switch (decisions_.payload) {
+      case FitDecisions::Payload::untold:
+        say("payload: these motions tell neither its mass nor where it is; it stays as it was");
+        break;
+      case FitDecisions::Payload::none:
+        say("payload: none to be seen beyond what the description has, " + withDeviation(seen.value, seen.deviation) +
+            " kg");
+        result_.calibration.payload.reset();
+        break;
+      case FitDecisions::Payload::impossible:
+        say("payload: what would explain the torques, " + withDeviation(seen.value, seen.deviation) +
+            " kg, leaves no last body of " + print(problem_.robot().joints.back().body.mass) +
+            " kg that there can be; it stays as it was. Are the masses of the description those of this arm, and the "
+            "efforts those upon it, not their opposite?");
+        break;
+      case FitDecisions::Payload::at_tip:
+        describePayloadAtTip();
+        break;
+      case FitDecisions::Payload::last_body:
+        describeLastBody();
+        break;
+      case FitDecisions::Payload::in_bodies:
+        result_.calibration.payload.reset();  // the last body has it
+        for (Index i = 0; i < problem_.regression().joints; ++i) describeBody(i);
+        break;
+      case FitDecisions::Payload::undecided:
+      case FitDecisions::Payload::stated:
+        break;
+    }
+  }
+
+  void describePayloadAtTip() {
     const auto& C = estimate_.covariance.topLeftCorner<kWeightParameters, kWeightParameters>();
-    const Eigen::Vector4d theta = estimate_.value.head<kWeightParameters>();
-    if (problem_.prior().deviation.head<kWeightParameters>().isZero(0.0)) return;
-    const bool mass_is_told = isTold(0);
-    if (!mass_is_told && !isTold(1) && !isTold(2) && !isTold(3)) {
-      say("payload: these motions tell neither its mass nor where it is; it stays as it was");
-      return;
-    }
-    const Eigen::Matrix4d regular = C + 1e-18 * Eigen::Matrix4d::Identity();
-    if (theta.dot(regular.ldlt().solve(theta)) < kSignificant) {
-      say("payload: none to be seen beyond what the description has, " + withDeviation(theta[0], deviation(0)) + " kg");
-      result_.calibration.payload.reset();
-      return;
-    }
-    BodyInertia body = problem_.payload(estimate_.value);
-    const double leverage = theta.tail<3>().norm();
-    if (leverage > kNearest * std::abs(body.mass)) {
-      const double mass = leverage / kNearest;
-      if (std::abs(mass - theta[0]) > kDoubtful * deviation(0)) {
-        describeLastBody(theta);
-        return;
-      }
-      body.mass = mass;
-      body.center = theta.tail<3>() / mass;
-    }
+    const BodyInertia body = problem_.payload(estimate_.value);
     CalibratedBody payload = calibratedBody(body);
     payload.mass.deviation = deviation(0);
     std::string center;
@@ -66,28 +70,25 @@ class Findings {
       center += (i == 0 ? "" : ", ") + withDeviation(c, payload.center[static_cast<std::size_t>(i)].deviation);
     }
     result_.calibration.payload = payload;
+    const bool mass_is_told = isTold(problem_, estimate_, 0) && !decisions_.mass_is_replaced;
     say("payload: " + withDeviation(body.mass, deviation(0)) + " kg at (" + center + ") m in " + problem_.robot().tip +
         (mass_is_told ? "" : "; these motions tell hardly more of it than mass times leverage"));
   }
 
   /// A shift of the centre of mass that no payload near the tip explains.
-  void describeLastBody(const Eigen::Vector4d& theta) {
+  void describeLastBody() {
     const ArmJoint& last = problem_.robot().joints.back();
-    const Eigen::Isometry3d& X = problem_.robot().X_lastlink_tip;
-    const double mass = last.body.mass + theta[0];
-    BodyInertia body;
-    body.mass = mass;
-    body.center =
-        (last.body.mass * last.body.center + theta[0] * X.translation() + X.linear() * theta.tail<3>()) / mass;
-    body.inertia = last.body.inertia * (mass / last.body.mass);
+    const BodyInertia body = problem_.lastBody(estimate_.value);
     CalibratedBody& found = result_.calibration.bodies[last.name];
     found = calibratedBody(body);
     found.mass.deviation = deviation(0);
-    for (Index i = 0; i < 3; ++i) found.center[static_cast<std::size_t>(i)].deviation = deviation(1 + i) / mass;
+    for (Index i = 0; i < 3; ++i) {
+      found.center[static_cast<std::size_t>(i)].deviation = deviation(1 + i) / body.mass;
+    }
     result_.calibration.payload.reset();
-    say("payload: rather another centre of mass of the last body: " + withDeviation(mass, deviation(0)) + " kg at (" +
-        print(body.center.x(), 4) + ", " + print(body.center.y(), 4) + ", " + print(body.center.z(), 4) + ") m in " +
-        last.link);
+    say("payload: rather another centre of mass of the last body: " + withDeviation(body.mass, deviation(0)) +
+        " kg at (" + print(body.center.x(), 4) + ", " + print(body.center.y(), 4) + ", " + print(body.center.z(), 4) +
+        ") m in " + last.link);
   }
 
   void describeBody(Index i) {
@@ -128,32 +129,43 @@ class Findings {
     const ArmJoint& joint = problem_.robot().joints[static_cast<std::size_t>(i)];
     const char* const torque = joint.type == JointType::prismatic ? " N" : " N m";
     const char* const viscous = joint.type == JointType::prismatic ? " N s/m" : " N m s/rad";
-    std::vector<std::string> told, untold;
+    std::vector<std::string> told, untold, stated;
     JointCalibration found = result_.calibration.joints[joint.name];
     if (result_.calibration.side == "link") {  // else the description's, which is that of the motors, would count
-      if (!found.damping) found.damping.emplace();
-      if (!found.friction) found.friction.emplace();
+      const auto mean = [&](Index which) {
+        return CalibratedValue{problem_.thinkable().mean[problem_.regression().indexOf(i, which)], 0.0};
+      };
+      if (!found.damping) found.damping = mean(TorqueRegression::kDamping);
+      if (!found.friction) found.friction = mean(TorqueRegression::kFriction);
     }
     const auto describe = [&](Index which, const char* name, const char* unit, std::optional<CalibratedValue>& value) {
       const Index at = problem_.regression().indexOf(i, which);
-      if (problem_.prior().deviation[at] == 0.0) return;
-      if (!isTold(at)) {
+      if (problem_.thinkable().deviation[at] == 0.0) {
+        const bool is_wanted = which == TorqueRegression::kBias || problem_.fitsFriction();
+        if (value && is_wanted) stated.push_back(std::string(name) + " " + print(value->value) + unit);
+        return false;
+      }
+      if (decisions_.left[static_cast<std::size_t>(at)]) {
         untold.emplace_back(name);
-        return;
+        return false;
       }
       value = CalibratedValue{estimate_.value[at], deviation(at)};
       told.push_back(std::string(name) + " " + withDeviation(value->value, value->deviation) + unit);
+      return true;
     };
     describe(TorqueRegression::kBias, "torque bias", torque, found.torque_bias);
     describe(TorqueRegression::kDamping, "damping", viscous, found.damping);
-    describe(TorqueRegression::kFriction, "friction", torque, found.friction);
-    if (problem_.mayChooseFrictionVelocity(i) &&
-        isTold(problem_.regression().indexOf(i, TorqueRegression::kFriction)) && problem_.frictionVelocity(i) > 0.0) {
+    const bool has_friction = describe(TorqueRegression::kFriction, "friction", torque, found.friction);
+    if (has_friction && problem_.mayChooseFrictionVelocity(i) && problem_.frictionVelocity(i) > 0.0) {
       found.friction_velocity = problem_.frictionVelocity(i);
       told.back() += " x tanh(velocity / " + print(problem_.frictionVelocity(i)) + ")";
     }
     result_.calibration.joints[joint.name] = found;
     if (!told.empty()) say(joint.name + ": " + joined(told));
+    if (!stated.empty()) {
+      say(joint.name + ": " + joined(stated) + (stated.size() == 1 ? " stays" : " stay") +
+          ", as the model to start from states " + (stated.size() == 1 ? "it" : "them") + " without a deviation");
+    }
     if (!untold.empty()) {
       say(joint.name + " moves too little, or not alone enough, to tell " + joined(untold) + ": left as " +
           (untold.size() == 1 ? "it was" : "they were"));
@@ -168,32 +180,27 @@ class Findings {
   }
   void say(const std::string& sentence) { result_.findings.push_back(sentence); }
   double deviation(Index at) const { return std::sqrt(std::max(0.0, estimate_.covariance(at, at))); }
-  bool isTold(Index at) const { return deviation(at) < kTold * problem_.prior().deviation[at]; }
 
   const FitProblem& problem_;
   const RidgeEstimate& estimate_;
+  const FitDecisions& decisions_;
   FitResult& result_;
 };
 
 }  // namespace
 
-void describeFit(const FitProblem& problem, const RidgeEstimate& estimate, const FitOptions& options,
-                 const EffortMetadata& meaning, FitResult& result) {
+void describeFit(const FitProblem& problem, const RidgeEstimate& estimate, const FitDecisions& decisions,
+                 const FitOptions& options, const EffortMetadata& meaning, FitResult& result) {
   result.calibration = options.start;
   if (options.start.side != meaning.side) result.calibration.joints.clear();  // of other efforts
   result.calibration.side = meaning.side;
   result.calibration.tip = problem.robot().tip;
-  Findings findings(problem, estimate, result);
-  if (problem.hasFreeBodies()) {
-    result.calibration.payload.reset();  // the last body has it
-    for (Index i = 0; i < problem.regression().joints; ++i) findings.describeBody(i);
-  } else {
-    findings.describePayload();
-  }
+  Findings findings(problem, estimate, decisions, result);
+  findings.describePayload();
   for (Index i = 0; i < problem.regression().joints; ++i) findings.describeJoint(i);
   if (!problem.fitsFriction()) {
     result.findings.emplace_back(
-        meaning.side == "link"
+        meaning.side == "link" && !options.friction
             ? "friction is not fitted: efforts measured at the links have that of the motors and gears behind them "
               "(--fit-friction fits what is left)"
             : "friction is not fitted, as asked: it stays as it was");

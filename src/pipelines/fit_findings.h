@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fit_decisions.h"
 #include "fit_problem.h"
 #include "ridge_regression.h"
 
@@ -7,7 +8,7 @@ namespace demo_logger {
 
 /// What an estimate means: fills the calibration, and a sentence for each quantity, also for those that the motions do
 /// not tell, which stay as the start has them.
-void describeFit(const FitProblem& problem, const RidgeEstimate& estimate, const FitOptions& options,
-                 const EffortMetadata& meaning, FitResult& result);
+void describeFit(const FitProblem& problem, const RidgeEstimate& estimate, const FitDecisions& decisions,
+                 const FitOptions& options, const EffortMetadata& meaning, FitResult& result);
 
 }  // namespace demo_logger

@@ -5,6 +5,7 @@
 
 #include "demo_logger/robot/identified_arm.h"
 #include "demo_logger/robot/robot_model.h"
+#include "demo_logger/trajectory/not_a_number.h"
 
 namespace demo_logger {
 namespace {
@@ -16,32 +17,41 @@ constexpr double kMass = 1.0;      // [kg]
 constexpr double kLeverage = 0.1;  // [kg m]
 constexpr double kBias = 0.02;
 constexpr double kFriction = 0.05;
-constexpr double kMassShare = 0.3;      // of a body's mass, if all bodies are free
-constexpr double kAside = 0.03;         // [m] of its centre
 constexpr double kUsualLimit = 50.0;    // [N m or N] where the description has none
 constexpr double kUsualVelocity = 2.0;  // [rad/s or m/s] ditto
 constexpr double kLeastLeft = 0.05;     // of the last body, whatever is taken away
 constexpr double kStandstill = 0.0025;  // of the velocity limit, below which friction holds a joint
 constexpr double kTurning = 0.1;        // [s] around a standstill, in which a step of friction is smoothed
+constexpr double kResolution = 1e-5;    // of the effort limit; no sensor, and no recording, tells less
 constexpr double kSureVelocity = 4.0;   // deviations of a velocity that surely is one
 
 double limitOf(double stated, double usual) { return std::isfinite(stated) && stated > 0.0 ? stated : usual; }
 
 }  // namespace
 
+ModelCalibration countedStart(const ModelCalibration& start, const EffortMetadata& meaning) {
+  ModelCalibration counted = start;
+  if (start.side != meaning.side) {
+    counted.joints.clear();
+    counted.side = "motor";  // as the description's are
+  }
+  return counted;
+}
+
 FitProblem::FitProblem(const RobotDescription& robot, const FitOptions& options, const EffortMetadata& meaning,
                        TorqueEquations equations)
-    : meaning_(meaning), equations_(std::move(equations)) {
-  ModelCalibration known = options.start;
+    : start_(countedStart(options.start, meaning)), meaning_(meaning), equations_(std::move(equations)) {
+  ModelCalibration known = start_;
   known.payload.reset();
   robot_ = calibrate(robot, known).seenAt(meaning.side);
   if (!meaning.includes_gravity) robot_.gravity.setZero();  // compensated beside what the efforts say
-  shows_drives_ = meaning.side == "motor" || options.start.side == "link";
+  shows_drives_ = meaning.side == start_.side;
   fits_friction_ = options.friction.value_or(meaning.side == "motor");
   regression_.joints = equations_.position.cols();
   setPrior(options);
   fillColumns();
   findWhatSays();
+  if (start_.payload) payload_form_ = PayloadForm::at_tip;
   assumePayload(prior_.mean);
 }
 
@@ -49,12 +59,14 @@ void FitProblem::setPrior(const FitOptions& options) {
   const Index count = kWeightParameters + TorqueRegression::kOfJoint * regression_.joints;
   prior_.mean = prior_.deviation = Eigen::VectorXd::Zero(count);
   prior_.not_negative.assign(static_cast<std::size_t>(count), false);
-  setPayloadPrior(options.start.payload);
+  setPayloadPrior();
   regression_.inertial.resize(0, kWeightParameters);  // indexOf counts on it
   setDrivePrior(options);
+  prior_of_deviations_ = thinkable_ = prior_;
 }
 
-void FitProblem::setPayloadPrior(const std::optional<CalibratedBody>& start) {
+void FitProblem::setPayloadPrior() {
+  const std::optional<CalibratedBody>& start = start_.payload;
   if (!start) {
     prior_.deviation.head<kWeightParameters>() << kMass, kLeverage, kLeverage, kLeverage;
     return;
@@ -72,27 +84,32 @@ void FitProblem::setPayloadPrior(const std::optional<CalibratedBody>& start) {
 
 void FitProblem::setDrivePrior(const FitOptions& options) {
   friction_velocity_ = Eigen::VectorXd::Zero(regression_.joints);
-  const bool start_counts = options.start.side == meaning_.side;
   for (Index i = 0; i < regression_.joints; ++i) {
     const ArmJoint& joint = robot_.joints[static_cast<std::size_t>(i)];
-    const auto found = options.start.joints.find(joint.name);
-    const JointCalibration start =
-        start_counts && found != options.start.joints.end() ? found->second : JointCalibration();
+    const auto found = start_.joints.find(joint.name);
+    const JointCalibration start = found != start_.joints.end() ? found->second : JointCalibration();
     const double effort = limitOf(joint.effort_limit, kUsualLimit);
     const double velocity = limitOf(joint.velocity_limit, kUsualVelocity);
-    const auto set = [&](Index which, double described, double deviation,
+    const auto set = [&](Index which, double described, double usual_deviation,
                          const std::optional<CalibratedValue>& calibrated) {
       const Index at = regression_.indexOf(i, which);
+      const bool is_friction = which != TorqueRegression::kBias;
       prior_.mean[at] = calibrated ? calibrated->value : described;
-      prior_.deviation[at] = calibrated ? calibrated->deviation : deviation;
-      prior_.not_negative[static_cast<std::size_t>(at)] = which != TorqueRegression::kBias;
+      double deviation = calibrated ? calibrated->deviation : usual_deviation;
+      if (is_friction && !fits_friction_) deviation = 0.0;
+      // A zero that nobody measured, as of a fit at the links that left friction out, is none that someone stated.
+      const bool is_placeholder = calibrated && calibrated->value == 0.0 && calibrated->deviation == 0.0;
+      if (is_friction && is_placeholder && options.friction == true) deviation = usual_deviation;
+      prior_.deviation[at] = deviation;
+      prior_.not_negative[static_cast<std::size_t>(at)] = is_friction;
     };
     const double friction = fits_friction_ ? kFriction * effort : 0.0;
     set(TorqueRegression::kBias, 0.0, kBias * effort, start.torque_bias);
     set(TorqueRegression::kDamping, shows_drives_ ? joint.damping : 0.0, friction / velocity, start.damping);
     set(TorqueRegression::kFriction, shows_drives_ ? joint.friction : 0.0, friction, start.friction);
     friction_velocity_[i] = shows_drives_ ? joint.friction_velocity : 0.0;
-    friction_velocity_is_known_.push_back(friction_velocity_[i] > 0.0);
+    const bool friction_is_free = prior_.deviation[regression_.indexOf(i, TorqueRegression::kFriction)] > 0.0;
+    friction_velocity_is_known_.push_back(friction_velocity_[i] > 0.0 || !friction_is_free);
   }
 }
 
@@ -151,11 +168,29 @@ void FitProblem::findWhatSays() {
 
 BodyInertia FitProblem::payload(const Eigen::VectorXd& theta) const {
   BodyInertia body;
-  const double least = (kLeastLeft - 1.0) * robot_.joints.back().body.mass;
-  body.mass = std::max(theta[0], least);
+  body.mass = theta[0];
   body.inertia = body.mass > 0.0 ? payload_inertia_ : Eigen::Matrix3d(Eigen::Matrix3d::Zero());
   if (body.mass != 0.0) body.center = theta.segment<3>(1) / body.mass;
   return body;
+}
+
+BodyInertia FitProblem::lastBody(const Eigen::VectorXd& theta) const {
+  const BodyInertia& described = robot_.joints.back().body;
+  const Eigen::Isometry3d& X = robot_.X_lastlink_tip;
+  BodyInertia body = described;
+  body.mass += theta[0];
+  body.center =
+      (described.mass * described.center + theta[0] * X.translation() + X.linear() * theta.segment<3>(1)) / body.mass;
+  if (described.mass > 0.0) body.inertia *= body.mass / described.mass;
+  return body;
+}
+
+bool FitProblem::leavesALastBody(const Eigen::VectorXd& theta) const {
+  constexpr double kFarthest = 1.0;  // [m]
+  const BodyInertia& described = robot_.joints.back().body;
+  const BodyInertia body = lastBody(theta);
+  return body.mass > 0.0 && body.mass >= kLeastLeft * described.mass &&
+         (body.center - described.center).norm() <= kFarthest;
 }
 
 /// What the drives do not explain.
@@ -172,12 +207,19 @@ Eigen::VectorXd FitProblem::modelledTorque(const RobotModel& model, Index row) c
 void FitProblem::assumePayload(const Eigen::VectorXd& theta) {
   if (hasFreeBodies()) return;
   constexpr double kFarthest = 1.0;  // [m] a centre beyond that tells of a mass that is not known yet
-  const BodyInertia body = payload(theta);
-  const bool is_usable = body.mass != 0.0 && body.center.norm() < kFarthest;
-  const RobotModel model(is_usable ? withPayload(robot_, body) : robot_);
-  const Index n = regression_.joints;
+  RobotDescription loaded = robot_;
   Eigen::VectorXd assumed = Eigen::VectorXd::Zero(kWeightParameters);
-  if (is_usable) assumed << body.mass, body.mass * body.center;
+  const bool is_payload = payload_form_ == PayloadForm::at_tip && theta[0] != 0.0 &&
+                          payload(theta).center.norm() < kFarthest && leavesALastBody(theta);
+  if (is_payload) {
+    loaded = withPayload(robot_, payload(theta));
+    assumed = theta.head<kWeightParameters>();
+  } else if (payload_form_ == PayloadForm::last_body && leavesALastBody(theta)) {
+    loaded.joints.back().body = lastBody(theta);
+    assumed = theta.head<kWeightParameters>();
+  }
+  const RobotModel model(loaded);
+  const Index n = regression_.joints;
   regression_.unexplained.resize(equations_.rows(), n);
   for (Index k = 0; k < equations_.rows(); ++k) {
     const Eigen::VectorXd explained = modelledTorque(model, k) - regression_.inertial.middleRows(k * n, n) * assumed;
@@ -185,48 +227,21 @@ void FitProblem::assumePayload(const Eigen::VectorXd& theta) {
   }
 }
 
-Eigen::VectorXd FitProblem::describedBodies() const {
-  constexpr Index kValues = LinearInertia::RowsAtCompileTime;
-  Eigen::VectorXd bodies(kValues * regression_.joints);
+void FitProblem::leave(Index at, double value) {
+  prior_.mean[at] = value;
+  prior_.deviation[at] = 0.0;
   for (Index i = 0; i < regression_.joints; ++i) {
-    bodies.segment<kValues>(kValues * i) = linearInertia(robot_.joints[static_cast<std::size_t>(i)].body);
+    if (at != regression_.indexOf(i, TorqueRegression::kFriction)) continue;
+    assumeFrictionVelocity(i, shows_drives_ ? robot_.joints[static_cast<std::size_t>(i)].friction_velocity : 0.0);
+    friction_velocity_is_known_[static_cast<std::size_t>(i)] = true;
   }
-  return bodies;
 }
 
-void FitProblem::freeBodies() {
-  constexpr Index kValues = LinearInertia::RowsAtCompileTime;
-  const Index n = regression_.joints;
-  const Index rows = equations_.rows();
-  const RobotModel described(robot_);
-  for (Index k = 0; k < rows; ++k) {
-    regression_.unexplained.row(k) = equations_.effort.row(k) - modelledTorque(described, k).transpose();
-  }
-
-  const auto drives = TorqueRegression::kOfJoint * n;
-  const Prior before = prior_;
-  prior_.mean = prior_.deviation = Eigen::VectorXd::Zero(kValues * n + drives);
-  prior_.mean.tail(drives) = before.mean.tail(drives);
-  prior_.deviation.tail(drives) = before.deviation.tail(drives);
-  prior_.not_negative.assign(static_cast<std::size_t>(kValues * n), false);
-  prior_.not_negative.insert(prior_.not_negative.end(), before.not_negative.begin() + kWeightParameters,
-                             before.not_negative.end());
-  regression_.inertial.resize(rows * n, kValues * n);
-  for (Index i = 0; i < n; ++i) {
-    InertiaRegressor body(robot_, static_cast<std::size_t>(i), Eigen::Isometry3d::Identity(), kValues);
-    for (Index k = 0; k < rows; ++k) {
-      body.evaluate(equations_.position.row(k), equations_.velocity.row(k), equations_.acceleration.row(k),
-                    regression_.inertial.block(k * n, kValues * i, n, kValues));
-    }
-    const BodyInertia& described_body = robot_.joints[static_cast<std::size_t>(i)].body;
-    const bool is_last = i + 1 == n;
-    const double mass = described_body.mass + (is_last ? before.deviation[0] : 0.0);
-    const double radius = described_body.center.norm() + kAside;
-    auto deviation = prior_.deviation.segment<kValues>(kValues * i);
-    deviation[0] = kMassShare * mass;
-    deviation.segment<3>(1).setConstant(mass * kAside + kMassShare * mass * described_body.center.norm());
-    deviation.tail<6>().setConstant(2.0 * mass * kAside * radius + kMassShare * described_body.inertia.trace());
-    if (is_last) deviation.head<kWeightParameters>() += before.deviation.head<kWeightParameters>();
+void FitProblem::dropPayload() {
+  payload_form_ = PayloadForm::weight;
+  for (Prior* prior : {&prior_, &prior_of_deviations_}) {
+    prior->mean.head<kWeightParameters>().setZero();
+    prior->deviation.head<kWeightParameters>().setZero();
   }
 }
 
@@ -235,15 +250,59 @@ Eigen::VectorXd FitProblem::usualTorque() const {
   const Index n = regression_.joints;
   Eigen::VectorXd modelled = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd measured = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd count = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd torque(n);
   for (Index k = 0; k < equations_.rows(); ++k) {
     model.inverseDynamics(equations_.position.row(k), equations_.velocity.row(k), equations_.acceleration.row(k),
                           torque);
     modelled += torque.cwiseAbs2();
-    const Eigen::VectorXd effort = equations_.effort.row(k);
-    if (effort.allFinite()) measured += effort.cwiseAbs2();
+    for (Index i = 0; i < n; ++i) {
+      const double effort = equations_.effort(k, i);
+      if (std::isnan(effort)) continue;
+      measured[i] += effort * effort;
+      count[i] += 1.0;
+    }
   }
-  return (modelled.cwiseMax(measured) / static_cast<double>(std::max<Index>(1, equations_.rows()))).cwiseSqrt();
+  modelled /= static_cast<double>(std::max<Index>(1, equations_.rows()));
+  return modelled.cwiseMax(measured.cwiseQuotient(count.cwiseMax(1.0))).cwiseSqrt();
+}
+
+Eigen::VectorXd FitProblem::resolution() const {
+  Eigen::VectorXd resolution(regression_.joints);
+  for (Index i = 0; i < regression_.joints; ++i) {
+    resolution[i] = kResolution * limitOf(robot_.joints[static_cast<std::size_t>(i)].effort_limit, kUsualLimit);
+  }
+  return resolution;
+}
+
+std::vector<double> FitProblem::residual(const CalibratedArm& arm, const std::vector<bool>& rows) const {
+  RobotDescription robot = arm.robot;
+  if (!meaning_.includes_gravity) robot.gravity.setZero();
+  const RobotModel model(robot);
+  const bool shows_drives = arm.drives_side == meaning_.side;
+  const Index n = regression_.joints;
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd count = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd torque(n);
+  for (Index k = 0; k < equations_.rows(); ++k) {
+    if (!rows[static_cast<std::size_t>(k)] || !regression_.says.row(k).any()) continue;
+    model.inverseDynamics(equations_.position.row(k), equations_.velocity.row(k), equations_.acceleration.row(k),
+                          torque);
+    for (Index i = 0; i < n; ++i) {
+      if (!regression_.says(k, i)) continue;
+      const ArmJoint& joint = robot.joints[static_cast<std::size_t>(i)];
+      if (shows_drives) {
+        torque[i] += arm.torque_bias[i] + joint.motor_inertia * equations_.acceleration(k, i) +
+                     joint.damping * equations_.velocity(k, i) +
+                     joint.friction * signAt(k, i, joint.friction_velocity).mean;
+      }
+      squares[i] += std::pow(equations_.effort(k, i) - torque[i], 2);
+      count[i] += 1.0;
+    }
+  }
+  std::vector<double> result;
+  for (Index i = 0; i < n; ++i) result.push_back(count[i] > 0.0 ? std::sqrt(squares[i] / count[i]) : kNaN);
+  return result;
 }
 
 Eigen::VectorXd FitProblem::noise() const {

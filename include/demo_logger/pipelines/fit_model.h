@@ -20,7 +20,8 @@ struct FitOptions {
   std::optional<EffortMetadata> effort;  // what the efforts mean; nothing: what the recordings' metadata says
   double max_gap = 0.1;                  // [s] nothing is concluded across a longer silence of the joints
   /// What is known already. A value with a deviation is where the fit starts, and holds it so firmly; one without is
-  /// known, and stays.
+  /// known, and stays (friction of zero does not where friction is asked for explicitly: a fit that left it out writes
+  /// that).
   ModelCalibration start;
   std::vector<TimeSpan> hand_free;  // where no hand touched the arm; empty: to be found
   std::optional<bool> friction;     // to be fitted; nothing: if the efforts are those of the motors
@@ -41,7 +42,7 @@ struct FitResult {
   double duration = 0.0;               // [s] of it
   std::size_t rows = 0;                // that tell of at least one joint
   std::vector<double> residual_start;  // per joint, root mean square there [N m or N], as the start has it
-  std::vector<double> residual;        // ditto, as fitted
+  std::vector<double> residual;        // ditto, of the arm as `calibration` has it
   std::vector<std::string> doubts;     // a sentence for each joint that given parts without a hand do not agree with
   std::vector<std::string> findings;   // a sentence for each quantity: what it is, or why it is not known
 };
@@ -55,6 +56,10 @@ struct FitResult {
 /// Residuals are not independent from row to row; each joint's are counted as the variance of their means over half a
 /// second says, and so are the deviations that come with the values.
 ///
+/// What the data do not tell stays as the start has it, a payload that chance alone would show once in a hundred times
+/// is none, and one whose mass is hardly told is put where a payload can be; the rest is fitted anew to that, so that
+/// what is written is what was fitted, and the residual its own.
+///
 /// Where no hand is, if not told: the longest part of the recordings, in windows of a quarter of a second, that one set
 /// of values explains to within `model_error` (or five times the noise of the sensors), sought from each stretch of two
 /// seconds; then only what lies within three times the residual that is usual there. Assumed is, so, that a hand's
@@ -67,7 +72,10 @@ struct FitResult {
 /// last one by a payload besides). Most of them are only known together; what is found is what torques need, the ridge
 /// decides the rest. Bodies that cannot be are replaced by the nearest that can, near as the data have it.
 ///
-/// Throws as addHumanTorque does.
+/// With them, a payload of the start goes into the last body; bodies that the start states stay, and those that it gives
+/// deviations are held by these.
+///
+/// Throws as addHumanTorque does; also ConfigurationError for an effort that no arm bears.
 FitResult fitModel(const RobotDescription& robot, const std::vector<const Demonstration*>& recordings,
                    const FitOptions& options = {});
 
