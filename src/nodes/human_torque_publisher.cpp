@@ -25,25 +25,27 @@ HumanTorquePublisher::HumanTorquePublisher(ros::NodeHandle private_node, const C
 
 void HumanTorquePublisher::onJointState(const JointStateSample& sample) {
   const Nanoseconds stamp = sample.arrival.stamp != 0 ? sample.arrival.stamp : sample.arrival.receipt;
-  if (!take(sample) || !isNext(stamp)) return;
+  if (!take(sample) || !isNext({stamp, sample.arrival.steady})) return;
   observer_.update(stamp, q_, effort_, torque_);
   message_.header.stamp = toRosTime(stamp);
   std::copy(torque_.begin(), torque_.end(), message_.effort.begin());
   publisher_.publish(message_);
 }
 
-/// Whether the joint state follows the last one. One before it came late; two such that agree say that the clock was
-/// set back.
-bool HumanTorquePublisher::isNext(Nanoseconds stamp) {
-  const bool late = last_ && stamp <= *last_;
-  const bool set_back = late && late_ && stamp > *late_;
-  late_ = late && stamp < *last_ ? std::optional<Nanoseconds>(stamp) : std::nullopt;
-  if (late && !set_back) return false;
-  if (set_back) {
-    observer_.restart();
-    late_.reset();
+/// Whether the joint state follows the last one. Messages overtake each other often, a clock is set back seldom.
+bool HumanTorquePublisher::isNext(const ClockReading& reading) {
+  switch (clock_.judge(reading)) {
+    case ClockWatch::Verdict::on_the_line:
+      if (last_ && reading.stamp <= *last_) return false;
+      break;
+    case ClockWatch::Verdict::jumped:
+      observer_.restart();
+      break;
+    case ClockWatch::Verdict::suspect:
+    case ClockWatch::Verdict::repeats_suspect:
+      return false;
   }
-  last_ = stamp;
+  last_ = reading.stamp;
   return true;
 }
 

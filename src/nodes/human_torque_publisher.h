@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "demo_logger/pipelines/human_torque_observer.h"
+#include "demo_logger/recording/clock_watch.h"
 #include "demo_logger/recording/sample.h"
 
 namespace demo_logger {
@@ -19,18 +20,18 @@ class HumanTorquePublisher {
   HumanTorquePublisher(ros::NodeHandle private_node, const CalibratedArm& arm,
                        const HumanTorqueObserverConfiguration& configuration);
 
-  /// A joint state as it came. One that is not newer than the last is left out, unless the clock was set back: then it
-  /// begins anew with the second on the new clock.
+  /// A joint state as it came. One that is not newer than the last is left out, as is one whose clock cannot be told
+  /// yet (ClockWatch, as in a recording): where it jumped, this begins anew with the second on the new clock.
   void onJointState(const JointStateSample& sample);
 
  private:
   bool take(const JointStateSample& sample);
-  bool isNext(Nanoseconds stamp);
+  bool isNext(const ClockReading& reading);
 
   HumanTorqueObserver observer_;
   ros::Publisher publisher_;
+  ClockWatch clock_;
   std::optional<Nanoseconds> last_;
-  std::optional<Nanoseconds> late_;  // the message before this one, if it came late
   Eigen::VectorXd q_, effort_, torque_;
   sensor_msgs::JointState message_;
 };

@@ -1,4 +1,4 @@
-#include "clock_watch.h"
+#include "demo_logger/recording/clock_watch.h"
 
 namespace demo_logger {
 

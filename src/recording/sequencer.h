@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "clock_offset.h"
-#include "clock_watch.h"
+#include "demo_logger/recording/clock_watch.h"
 #include "demo_logger/recording/synchroniser.h"
 #include "inbox.h"
 #include "joint_states.h"

@@ -28,17 +28,15 @@ class HumanTorqueTest : public RecorderUnderTest {
   void hold(int count) {
     if (stamp_.isZero()) stamp_ = ros::Time::now();
     for (int i = 0; i < count; ++i) {
-      sensor_msgs::JointState message;
-      message.header.stamp = stamp_;
-      message.name = {"gripper", "joint_2", "joint_1"};
-      message.position = {0.7, 0.0, 0.0};
-      message.effort = {0.1, 0.0, -kHand};
-      joint_states_.publish(message);
+      publishAt(stamp_);
       stamp_ += ros::Duration(kPeriod);
-      ++moved_;
-      ros::WallDuration(kPeriod).sleep();
-      ros::spinOnce();
     }
+  }
+
+  /// The next joint state overtakes two others.
+  void overtake() {
+    for (const int place : {2, 0, 1}) publishAt(stamp_ + ros::Duration(place * kPeriod));
+    stamp_ += ros::Duration(3 * kPeriod);
   }
 
   void setBack(double seconds) { stamp_ -= ros::Duration(seconds); }
@@ -53,6 +51,18 @@ class HumanTorqueTest : public RecorderUnderTest {
   std::vector<sensor_msgs::JointState> observed_;
 
  private:
+  void publishAt(const ros::Time& stamp) {
+    sensor_msgs::JointState message;
+    message.header.stamp = stamp;
+    message.name = {"gripper", "joint_2", "joint_1"};
+    message.position = {0.7, 0.0, 0.0};
+    message.effort = {0.1, 0.0, -kHand};
+    joint_states_.publish(message);
+    ++moved_;
+    ros::WallDuration(kPeriod).sleep();
+    ros::spinOnce();
+  }
+
   void onTorque(const sensor_msgs::JointState& torque) { observed_.push_back(torque); }
   ros::Subscriber observed_subscriber_;
   ros::Time stamp_;
@@ -96,10 +106,29 @@ TEST_F(HumanTorqueTest, AClockThatIsSetBackBeginsItAnewOnTheTopic) {
   hold(100);
   ASSERT_TRUE(waitUntil([&] { return observed_.size() == 100; })) << observed_.size();
   EXPECT_FALSE(std::isnan(observed_.back().effort[0]));
-  setBack(0.05);
+  setBack(2.0);
   hold(100);
-  ASSERT_TRUE(waitUntil([&] { return observed_.size() == 199; })) << observed_.size() << "; the first counts as late";
+  ASSERT_TRUE(waitUntil([&] { return observed_.size() == 199; })) << observed_.size() << "; one is no evidence";
   for (std::size_t i = 100; i < 150; ++i) EXPECT_TRUE(std::isnan(observed_[i].effort[0])) << i;
+  EXPECT_NEAR(observed_.back().effort[0], kHand, 0.02);
+}
+
+TEST_F(HumanTorqueTest, JointStatesThatAreOvertakenCostNothingButThemselvesOnTheTopic) {
+  startWithRobot({"_tip:=tool_tip", "_human_torque:=true"});
+  hold(100);
+  for (int i = 0; i < 5; ++i) {
+    overtake();
+    hold(10);
+  }
+  setBack(0.02);  // late by ten, which is no other clock either
+  hold(20);
+  const std::size_t expected = 100 + 5 * (1 + 10) + 10;
+  ASSERT_TRUE(waitUntil([&] { return observed_.size() >= expected; })) << observed_.size();
+  EXPECT_EQ(observed_.size(), expected);
+  for (std::size_t i = 1; i < observed_.size(); ++i) {
+    EXPECT_GT(observed_[i].header.stamp, observed_[i - 1].header.stamp) << i;
+    EXPECT_TRUE(i < 60 || !std::isnan(observed_[i].effort[0])) << i;
+  }
   EXPECT_NEAR(observed_.back().effort[0], kHand, 0.02);
 }
 
