@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <string_view>
 #include <utility>
 
 #include "demo_logger/pipelines/recorded_robot.h"
@@ -139,6 +140,7 @@ HumanTorqueRequest parseHumanTorque(Parameters& parameters, const EffortMetadata
     observer.cutoff = group.number("cutoff", observer.cutoff, {0.1, 10000.0, "Hz"});
     observer.gravity_compensated = group.flag("gravity_compensated", observer.gravity_compensated);
     request.model = group.text("model", "");
+    if (!request.model.empty()) request.model = std::filesystem::absolute(request.model);
     request.wrench = group.text("wrench", "");
     request.wrench_link = group.text("wrench_link", "");
     if (request.wrench.empty() && !request.wrench_link.empty()) {
@@ -173,6 +175,21 @@ std::optional<RobotDescription> parseRobot(Parameters& parameters, const std::st
   return describeRobot(robot_description, options);
 }
 
+/// Of a file that is not used it is said all the same if it could not be.
+std::optional<ObservedHuman> findHumanTorque(const Parameters& parameters, const HumanTorqueRequest& request,
+                                             const std::optional<RobotDescription>& robot) {
+  try {
+    if (request.observer) {
+      const CalibratedArm arm = calibrate(robot.value(), std::filesystem::path(request.model));
+      return ObservedHuman{*request.observer, arm, request.model};
+    }
+    if (!request.model.empty()) readModelCalibration(request.model);
+  } catch (const FileError& error) {
+    throw ConfigurationError(parameters.fullName("human_torque/model") + ": " + error.what());
+  }
+  return std::nullopt;
+}
+
 /// `wrench` has its columns from the beginning, published or not.
 RecordedWrench findWrench(const Parameters& parameters, const HumanTorqueRequest& request,
                           const std::string& robot_description, const RobotDescription& robot,
@@ -196,6 +213,19 @@ RecordedWrench findWrench(const Parameters& parameters, const HumanTorqueRequest
     return {request.wrench, describeRobot(robot_description, to_sensor)};
   } catch (const ModelError& error) {
     throw ConfigurationError(parameters.fullName("human_torque/wrench_link") + ": " + error.what());
+  }
+}
+
+/// Of efforts that torques are made of.
+void requireMeaning(const Parameters& parameters, const DemoLoggerParameters& result) {
+  if (!result.human_torque) return;
+  try {
+    validate(result.human_torque->observer.effort);
+  } catch (const ConfigurationError& error) {
+    constexpr std::string_view kGroup = "effort: ";
+    std::string sentence = error.what();
+    if (sentence.rfind(kGroup, 0) == 0) sentence.replace(0, kGroup.size(), "effort/");
+    throw ConfigurationError(parameters.fullName(sentence));
   }
 }
 
@@ -275,10 +305,7 @@ DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std
   const HumanTorqueRequest human_torque = parseHumanTorque(parameters, metadata.effort);
   result.robot = parseRobot(parameters, robot_description, human_torque);
   synchroniser.joints = parameters.texts("joints", {});
-  if (human_torque.observer) {
-    result.human_torque = {*human_torque.observer, calibrate(*result.robot, std::filesystem::path(human_torque.model)),
-                           human_torque.model};
-  }
+  result.human_torque = findHumanTorque(parameters, human_torque, result.robot);
   if (!human_torque.wrench.empty()) {
     result.wrench = findWrench(parameters, human_torque, robot_description, *result.robot, synchroniser.streams);
   }
@@ -287,10 +314,10 @@ DemoLoggerParameters parseDemoLoggerParameters(Parameters& parameters, const std
   try {  // their sentences begin with the field, which is the parameter's name
     validate(synchroniser);
     if (result.robot) recordRobot(*result.robot, recorder);
-    if (result.human_torque) validate(result.human_torque->observer.effort);
   } catch (const ConfigurationError& error) {
     throw ConfigurationError(parameters.fullName(error.what()));
   }
+  requireMeaning(parameters, result);
   metadata.parameters = describeParameters(result);
   return result;
 }

@@ -235,16 +235,24 @@ TEST(DemoLoggerParametersTest, WhatHumanTorqueCannotDoWithoutIsNamed) {
                 twoLinkUrdf())
                 .rfind("/demo_logger/human_torque/wrench_link: ", 0),
             0U);
-  EXPECT_EQ(refusal([](XmlRpcValue& values) { values["human_torque"]["model"] = "/no/such.yaml"; }, twoLinkUrdf())
-                .rfind("/no/such.yaml", 0),
-            0U);
+  for (const bool observe : {true, false}) {
+    EXPECT_EQ(refusal(
+                  [&](XmlRpcValue& values) {
+                    values["human_torque"]["observe"] = observe;
+                    values["human_torque"]["model"] = "such.yaml";
+                  },
+                  twoLinkUrdf()),
+              "/demo_logger/human_torque/model: " + (std::filesystem::current_path() / "such.yaml").string() +
+                  ": no such file, expected a model (YAML)")
+        << "observe: " << observe;
+  }
   EXPECT_EQ(refusal(
                 [](XmlRpcValue& values) {
                   values["human_torque"] = true;
                   values["effort"]["timing"] = "held";
                 },
                 twoLinkUrdf()),
-            "/demo_logger/effort: control_period is 0 s, expected that of the arm's controller, since its efforts are "
+            "/demo_logger/effort/control_period is 0 s, expected that of the arm's controller, since its efforts are "
             "held: a held effort acts half of it late.");
 }
 
