@@ -8,8 +8,6 @@
 namespace demo_logger {
 namespace {
 
-constexpr std::size_t kLongestQuote = 40;
-
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 std::string_view trimmed(std::string_view text) {
@@ -66,14 +64,6 @@ CellKind parseCell(std::string_view cell, double& value) {
     return CellKind::infinity;
   }
   return std::isnan(value) ? CellKind::text : CellKind::number;  // nan(…) carries a payload that would be lost
-}
-
-std::string inQuotes(std::string_view cell) {
-  std::string text = "\"";
-  for (const char c : cell.substr(0, kLongestQuote)) {
-    text += static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? '?' : c;
-  }
-  return text + (cell.size() > kLongestQuote ? "…\"" : "\"");
 }
 
 }  // namespace demo_logger

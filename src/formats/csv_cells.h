@@ -14,7 +14,4 @@ enum class CellKind { number, infinity, beyond_range, text };
 /// What a cell without blanks holds: a number, or NaN for an empty cell, nan or na in any case.
 CellKind parseCell(std::string_view cell, double& value);
 
-/// A cell for use in a message: in quotes, printable, not long.
-std::string inQuotes(std::string_view cell);
-
 }  // namespace demo_logger

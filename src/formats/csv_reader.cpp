@@ -11,6 +11,7 @@
 #include "csv_cells.h"
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
+#include "demo_logger/trajectory/quotation.h"
 #include "line_reader.h"
 
 namespace demo_logger {

@@ -10,6 +10,7 @@
 #include "demo_logger/simulation/compliance.h"
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/print.h"
+#include "demo_logger/trajectory/quotation.h"
 #include "src/nodes/simulated_arm_node.h"
 
 namespace demo_logger {
@@ -119,9 +120,9 @@ std::pair<LinkWrench, std::string> SimulatedArmNode::wrenchUpon(const std::strin
                                                                 bool in_link_axes) const {
   LinkWrench wrench;
   const auto found = links_.find(link);
-  if (found == links_.end()) return {wrench, "a wrench acts upon \"" + link + "\", no link of this robot"};
+  if (found == links_.end()) return {wrench, "a wrench acts upon " + inQuotes(link) + ", no link of this robot"};
   if (found->second.joint < 0) {
-    return {wrench, "a wrench acts upon \"" + link + "\", which this arm does not move"};
+    return {wrench, "a wrench acts upon " + inQuotes(link) + ", which this arm does not move"};
   }
   const Eigen::Isometry3d& X_body_link = found->second.X_body_link;
   wrench.joint = found->second.joint;
@@ -141,8 +142,8 @@ bool SimulatedArmNode::applyWrench(ApplyWrench::Request& request, ApplyWrench::R
   const std::string& axes = request.wrench.header.frame_id;
   const double duration = request.duration.toSec();
   if (!axes.empty() && axes != request.link && axes != parameters_.robot.base) {
-    response.message = "the wrench is in the axes of \"" + axes + "\", expected \"" + request.link + "\" or \"" +
-                       parameters_.robot.base + "\".";
+    response.message = "the wrench is in the axes of " + inQuotes(axes) + ", expected " + inQuotes(request.link) +
+                       " or " + inQuotes(parameters_.robot.base) + ".";
     return true;
   }
   if (duration <= 0.0 || duration > kLongestPush) {

@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/quotation.h"
 #include "demo_logger/trajectory/regular_file.h"
 
 namespace demo_logger {
 namespace {
 
-constexpr std::size_t kLongestQuote = 40;
 constexpr std::uintmax_t kLargestFile = 1000000;  // [B]
 
 std::string listed(const std::vector<std::string>& words) {
@@ -31,8 +31,7 @@ std::string shown(const YAML::Node& node) {
   if (node.IsMap()) return "a mapping";
   if (node.IsSequence()) return "a list of " + std::to_string(node.size());
   if (!node.IsScalar()) return "nothing";
-  const std::string& text = node.Scalar();
-  return "\"" + (text.size() > kLongestQuote ? text.substr(0, kLongestQuote) + "…" : text) + "\"";
+  return inQuotes(node.Scalar());
 }
 
 }  // namespace

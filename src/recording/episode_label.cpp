@@ -11,6 +11,7 @@
 #include "demo_logger/formats/atomic_file.h"
 #include "demo_logger/formats/sidecar.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/quotation.h"
 #include "demo_logger/trajectory/regular_file.h"
 #include "episode_name.h"
 #include "file_system.h"
@@ -33,7 +34,7 @@ void requireOneOf(const std::array<std::string_view, count>& allowed, const std:
   for (std::size_t i = 0; i < count; ++i) {
     list += (i == 0 ? "" : i + 1 < count ? ", " : " or ") + std::string(allowed[i]);
   }
-  throw ConfigurationError(what + " is \"" + value + "\", expected " + list + ".");
+  throw ConfigurationError(what + " is " + inQuotes(value) + ", expected " + list + ".");
 }
 
 }  // namespace

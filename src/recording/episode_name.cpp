@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/quotation.h"
 
 namespace demo_logger {
 
@@ -68,7 +69,7 @@ std::uint64_t nextEpisodeNumber(const std::filesystem::path& directory) {
 
 void requirePlainId(const std::string& id) {
   if (id.empty() || !std::all_of(id.begin(), id.end(), isPlain)) {
-    throw FileError("\"" + id + "\" is not the id of an episode; expected letters, digits, _ and - alone, as in " +
+    throw FileError(inQuotes(id) + " is not the id of an episode; expected letters, digits, _ and - alone, as in " +
                     episodeId(1) + ".");
   }
 }

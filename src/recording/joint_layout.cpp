@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include "demo_logger/trajectory/quotation.h"
+
 namespace demo_logger {
 namespace {
 
@@ -88,7 +90,7 @@ std::vector<std::string> numberedJoints(std::size_t count) {
 
 std::string listOf(const std::vector<std::string>& names) {
   std::string list;
-  for (std::size_t i = 0; i < std::min(names.size(), kListed); ++i) list += (i == 0 ? "" : ", ") + names[i];
+  for (std::size_t i = 0; i < std::min(names.size(), kListed); ++i) list += (i == 0 ? "" : ", ") + shortened(names[i]);
   if (names.size() > kListed) list += " and " + std::to_string(names.size() - kListed) + " more";
   return list;
 }

@@ -7,6 +7,7 @@
 
 #include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
+#include "demo_logger/trajectory/quotation.h"
 
 namespace demo_logger {
 namespace {
@@ -20,7 +21,7 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
   return names;
 }
 
-std::string quoted(const std::string& text) { return "'" + text + "'"; }
+std::string quoted(const std::string& text) { return "'" + shortened(text) + "'"; }
 
 }  // namespace
 

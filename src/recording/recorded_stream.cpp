@@ -6,6 +6,7 @@
 
 #include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
+#include "demo_logger/trajectory/quotation.h"
 
 namespace demo_logger {
 namespace {
@@ -182,7 +183,8 @@ void RecordedStream::watchFrame(const Arrival& arrival) {
   if (frame_ && *frame_ == arrival.frame_id) return;
   if (frame_) {
     ledger_.report(FaultKind::frame_changed, index_, arrival.receipt, [&] {
-      return title() + " changed its frame_id from '" + *frame_ + "' to '" + arrival.frame_id + "'";
+      return title() + " changed its frame_id from '" + shortened(*frame_) + "' to '" + shortened(arrival.frame_id) +
+             "'";
     });
   }
   frame_ = arrival.frame_id;

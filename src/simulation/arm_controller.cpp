@@ -9,6 +9,7 @@
 #include "demo_logger/simulation/command_gate.h"
 #include "demo_logger/simulation/compliance.h"
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/quotation.h"
 #include "effort_guard.h"
 #include "joint_servo.h"
 #include "path_follower.h"
@@ -92,7 +93,7 @@ class ArmController::Implementation {
       const std::string refusal = admit(command, now, state);
       if (refusal.empty()) continue;
       ++refused_;
-      reasons.add("refused" + (command.source.empty() ? "" : " from " + command.source) + ": " + refusal);
+      reasons.add("refused" + (command.source.empty() ? "" : " from " + shortened(command.source)) + ": " + refusal);
     }
     follower_.advance(now);
     const ArmCommand* command = gate_.inForce(now);

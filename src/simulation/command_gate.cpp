@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/quotation.h"
 #include "print.h"
 #include "snapshot.h"
 
@@ -80,7 +81,8 @@ ControlMode toControlMode(const std::string& name) {
     if (known_name == name) return value;
     known += (known.empty() ? "" : ", ") + known_name;
   }
-  throw ConfigurationError("control mode \"" + name + "\" is not one of this arm, expected one of " + known + ".");
+  throw ConfigurationError("control mode " + inQuotes(name) + " is not one of this arm, expected one of " + known +
+                           ".");
 }
 
 CommandGate::CommandGate(Configuration configuration) : configuration_(std::move(configuration)) {}
@@ -137,8 +139,8 @@ std::string CommandGate::checkTwist(const ArmCommand& command) const {
            " values, expected vx vy vz wx wy wz";
   }
   if (!command.frame.empty() && command.frame != configuration_.base && command.frame != configuration_.tip) {
-    return "a twist is given in the frame \"" + command.frame + "\", expected \"" + configuration_.base + "\" or \"" +
-           configuration_.tip + "\"";
+    return "a twist is given in the frame " + inQuotes(command.frame) + ", expected \"" + configuration_.base +
+           "\" or \"" + configuration_.tip + "\"";
   }
   for (std::size_t i = 0; i < kTwistComponents.size(); ++i) {
     std::string refusal = checkNumber(kTwistComponents.at(i), "a cartesian_velocity command",
@@ -153,10 +155,10 @@ std::string CommandGate::checkNames(const std::vector<std::string>& names, std::
   const std::vector<std::string>& joints = configuration_.joints;
   for (const std::string& name : names) {
     const auto joint = std::find(joints.begin(), joints.end(), name);
-    if (joint == joints.end()) return "the command names \"" + name + "\", no joint of this arm";
+    if (joint == joints.end()) return "the command names " + inQuotes(name) + ", no joint of this arm";
     const Eigen::Index place = joint - joints.begin();
     if (std::find(order.begin(), order.end(), place) != order.end()) {
-      return "the command names \"" + name + "\" twice";
+      return "the command names " + inQuotes(name) + " twice";
     }
     order.push_back(place);
   }
@@ -201,8 +203,8 @@ std::string CommandGate::checkStart(const ArmCommand& command, Nanoseconds now) 
 std::string CommandGate::checkStamp(const ArmCommand& command, Nanoseconds now) {
   if (command.stamp == 0) return "";
   if (clocks_.count(command.source) == 0 && clocks_.size() >= kMostSources) {
-    return "more than " + std::to_string(kMostSources) + " publishers have commanded this arm; " + command.source +
-           " is one too many";
+    return "more than " + std::to_string(kMostSources) + " publishers have commanded this arm; " +
+           shortened(command.source) + " is one too many";
   }
   PublisherClock& clock = clocks_[command.source];
   clock.observe(command.stamp, now);
@@ -267,7 +269,7 @@ std::vector<std::string> CommandGate::clockMismatches() const {
   for (const auto& [source, clock] : clocks_) {
     const Nanoseconds offset = clock.offset().value_or(0);
     if (offset == 0) continue;
-    mismatches.push_back(source + ": stamps are " + printDuration(std::abs(offset)) +
+    mismatches.push_back(shortened(source) + ": stamps are " + printDuration(std::abs(offset)) +
                          (offset > 0 ? " behind" : " ahead of") +
                          " this clock (transport or skew); ages are corrected");
   }

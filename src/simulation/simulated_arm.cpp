@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "demo_logger/trajectory/error.h"
+#include "demo_logger/trajectory/quotation.h"
 #include "print.h"
 
 namespace demo_logger {
@@ -128,7 +129,7 @@ std::vector<std::string> SimulatedArm::overlaps() const {
 void SimulatedArm::refuse(const std::string& source, const std::string& why) {
   constexpr std::size_t kMost = 8;
   ++refused_;
-  const std::string refusal = "refused" + (source.empty() ? "" : " from " + source) + ": " + why;
+  const std::string refusal = "refused" + (source.empty() ? "" : " from " + shortened(source)) + ": " + why;
   const bool known = std::find(refusals_.begin(), refusals_.end(), refusal) != refusals_.end();
   if (!known && refusals_.size() < kMost) refusals_.push_back(refusal);
 }

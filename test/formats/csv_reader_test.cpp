@@ -160,8 +160,8 @@ TEST(CsvReaderTest, ACellThatIsNoNumberIsNamedWithItsColumn) {
 }
 
 TEST(CsvReaderTest, LongAndUnprintableCellsAreShortenedInTheMessage) {
-  EXPECT_EQ(errorOf("time,q\n0,0\n1,\x1b[31m" + std::string(50, 'x') + "\n"),
-            "reach_07.csv:3: column 2 (q) is \"?[31m" + std::string(35, 'x') +
+  EXPECT_EQ(errorOf("time,q\n0,0\n1,\x1b[31m" + std::string(90, 'x') + "\n"),
+            "reach_07.csv:3: column 2 (q) is \"?[31m" + std::string(75, 'x') +
                 "…\", expected a number, or NaN where the value is missing.");
 }
 

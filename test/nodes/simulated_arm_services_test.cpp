@@ -124,6 +124,7 @@ TEST_F(SimulatedArmServicesTest, GainsThatCannotBeHeldAreRefusedInASentence) {
 
 TEST_F(SimulatedArmServicesTest, ImpossibleWrenchesAreAnsweredInASentence) {
   EXPECT_EQ(push("no_link", 1.0, 1.0).message, "a wrench acts upon \"no_link\", no link of this robot.");
+  EXPECT_LT(push(std::string(100000, 'x'), 1.0, 1.0).message.size(), 200U) << "no more than tells which";
   EXPECT_EQ(push("base_link", 1.0, 1.0).message, "a wrench acts upon \"base_link\", which this arm does not move.");
   EXPECT_EQ(push("link_3", 1.0, 1.0, "link_5").message,
             "the wrench is in the axes of \"link_5\", expected \"link_3\" or \"base_link\".");

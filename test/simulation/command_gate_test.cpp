@@ -95,6 +95,17 @@ TEST(CommandGateTest, WhatIsMalformedIsRefusedInWords) {
   EXPECT_EQ(gate.inForce(kNow), nullptr);
 }
 
+TEST(CommandGateTest, ARefusalIsShortHoweverLongWhatItNames) {
+  CommandGate gate = makeGate();
+  const std::string endless(100000, 'x');
+  const std::string shown = "\"" + std::string(80, 'x') + "…\"";
+  EXPECT_EQ(admit(gate, makeTwist(endless)),
+            "a twist is given in the frame " + shown + ", expected \"base\" or \"tool\"");
+  ArmCommand command = makeVelocity(0.0, 0.0);
+  command.names = {"shoulder", endless};
+  EXPECT_EQ(admit(gate, command), "the command names " + shown + ", no joint of this arm");
+}
+
 TEST(CommandGateTest, ARefusalHasTheUnitOfItsJointAndMode) {
   CommandGate gate({{"rail", "elbow"}, "base", "tool", /*timeout=*/0.5, /*slides=*/{true, false}});
   ArmCommand command = makeVelocity(1e7, 0.0);
