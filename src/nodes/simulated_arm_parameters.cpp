@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "demo_logger/simulation/compliance.h"
 #include "demo_logger/trajectory/print.h"
 #include "src/ros/parameters.h"
 
@@ -135,8 +136,8 @@ struct Gains {
 
 Gains readImpedance(Parameters parameters) {
   Gains gains;
-  gains.stiffness = parameters.numbers("stiffness", {}, {0.0, INFINITY, "N m/rad or N/m"});
-  gains.damping = parameters.numbers("damping", {}, {0.0, INFINITY, "N m s/rad or N s/m"});
+  gains.stiffness = parameters.numbers("stiffness", {}, {0.0, kLargestGain, "N m/rad or N/m"});
+  gains.damping = parameters.numbers("damping", {}, {0.0, kLargestGain, "N m s/rad or N s/m"});
   parameters.rejectUnknown();
   return gains;
 }

@@ -149,10 +149,9 @@ TEST_F(NodeStartTest, AnImpedanceThatCouldNotBeHeldIsRefused) {
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_EQ(ended.output.rfind("simulated_arm: impedance: damping of ", 0), 0U) << ended.output;
   ros::NodeHandle().setParam("started/impedance/damping", std::vector<double>{-1.0});
-  expectRefusal(
-      startAs("started", "simulated_arm_node"),
-      "simulated_arm: /started/impedance/damping[0] is -1 N m s/rad or N s/m, expected a number of at least 0 "
-      "N m s/rad or N s/m.");
+  expectRefusal(startAs("started", "simulated_arm_node"),
+                "simulated_arm: /started/impedance/damping[0] is -1 N m s/rad or N s/m, expected a number from 0 to "
+                "1e+09 N m s/rad or N s/m.");
 }
 
 TEST_F(NodeStartTest, ADeviceWithoutAxesIsRefused) {
