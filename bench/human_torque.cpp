@@ -271,8 +271,7 @@ void measureHonesty() {
   std::printf(
       "\nThe hand trembles at 7 to 11 Hz, the wrists by some 2e-4 rad. Under noise of 1e-3 rad the smoother takes most "
       "of that away; the deviation holds it as far as the residuals show it beyond chance. Under 3e-3 rad they hardly "
-      "show it in a recording of 8 s, and what noise hides no deviation can hold. An encoder's deviations are wide: "
-      "where a joint is slow or rests, its steps are no white noise.\n");
+      "show it in a recording of 8 s, and what noise hides no deviation can hold.\n");
 }
 
 /// A guided arm for as long as one likes: one teaching after the other.

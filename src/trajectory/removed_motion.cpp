@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace demo_logger {
 namespace {
@@ -59,7 +60,7 @@ class Segments {
   }
 
   Index count() const { return static_cast<Index>(age_.back() / kHop) + 2; }
-  double T(std::size_t sample) const { return T_[sample]; }
+  double timeConstant(std::size_t sample) const { return T_[sample]; }
   double age(std::size_t sample) const { return age_[sample]; }  // [T]
 
   struct Place {
@@ -134,12 +135,28 @@ Eigen::ArrayXd excessOf(const Eigen::ArrayXd& powers, double standard_deviations
   return excess;
 }
 
+/// The smallest change from one measured position to the next that is one.
+double smallestStep(const Eigen::VectorXd& position) {
+  double smallest = std::numeric_limits<double>::infinity();
+  double before = std::numeric_limits<double>::quiet_NaN();
+  for (const double now : position) {
+    if (std::isnan(now)) continue;
+    if (now != before && !std::isnan(before)) smallest = std::min(smallest, std::abs(now - before));
+    before = now;
+  }
+  return smallest;
+}
+
+/// An encoder's steps look like motion where a joint is slow, unless other noise of half a step at least blurs them:
+/// r = (step/2)² + step²/12 then.
+bool stepsShow(const Eigen::VectorXd& position, double r) { return std::pow(smallestStep(position), 2) > 3.0 * r; }
+
 }  // namespace
 
 void addRemovedMotion(const std::vector<double>& time, const Eigen::VectorXd& position, double interval,
                       const std::vector<double>& liveliness, SmoothedMotion& motion) {
   const double r = motion.measurement_deviation * motion.measurement_deviation;
-  if (!(r > 0.0)) return;
+  if (!(r > 0.0) || stepsShow(position, r)) return;
   const Segments segments(time, motion.time_constant, liveliness);
   const Spectrum spectrum = spectrumOf(position - motion.position, segments);
   const double full = 0.5 * kSegment * motion.time_constant / interval;  // Σ w² without a gap
@@ -161,7 +178,7 @@ void addRemovedMotion(const std::vector<double>& time, const Eigen::VectorXd& po
     const Segments::Place place = segments.placeOf(k);
     const Eigen::Array3d share =
         place.here * place.here * removed.col(place.segment) + place.next * place.next * removed.col(place.segment + 1);
-    const double T2 = segments.T(k) * segments.T(k);
+    const double T2 = std::pow(segments.timeConstant(k), 2);
     Eigen::Matrix3d& covariance = motion.covariance[k];
     covariance(0, 0) += share[0];
     covariance(1, 1) += share[1] / T2;

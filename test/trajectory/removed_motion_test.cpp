@@ -158,6 +158,19 @@ TEST(RemovedMotionTest, WhereTheModelIsRightNothingIsAdded) {
   }
 }
 
+TEST(RemovedMotionTest, TheStepsOfAnEncoderAreNotTakenForMotion) {
+  constexpr double kStep = 2.0 * kPi / 262144.0;
+  std::vector<double> time;
+  Eigen::VectorXd measured(8000);
+  for (Index k = 0; k < measured.size(); ++k) {
+    time.push_back(0.001 * static_cast<double>(k));
+    measured[k] = kStep * std::round(0.005 * std::sin(0.8 * time.back()) / kStep);  // 4 mrad/s: a step each 6 ms
+  }
+  const SmoothedMotion motion = smoothMotion(time, measured);
+  const SmoothedMotion of_the_model = smoothMotion(time, measured, motion.time_constant);
+  EXPECT_LT(deviations(motion, 2).maxCoeff(), 1.5 * deviations(of_the_model, 2).maxCoeff());
+}
+
 TEST(RemovedMotionTest, TheCovarianceStaysOne) {
   const Truth truth = move(HandMotion());
   const SmoothedMotion motion = smoothMotion(truth.time, truth.measured);
