@@ -55,7 +55,8 @@ class Segments {
       : T_(time.size(), T), age_(time.size(), 0.0) {
     for (std::size_t k = 0; k < time.size(); ++k) {
       if (!liveliness.empty()) T_[k] = T * std::pow(liveliness[k], -0.125);  // S goes with T⁻⁸
-      if (k > 0) age_[k] = age_[k - 1] + (time[k] - time[k - 1]) / T_[k];
+      // Samples that are further apart share no segment, so a long silence needs none.
+      if (k > 0) age_[k] = age_[k - 1] + std::min((time[k] - time[k - 1]) / T_[k], kSegment);
     }
   }
 

@@ -171,6 +171,16 @@ TEST(RemovedMotionTest, TheStepsOfAnEncoderAreNotTakenForMotion) {
   EXPECT_LT(deviations(motion, 2).maxCoeff(), 1.5 * deviations(of_the_model, 2).maxCoeff());
 }
 
+TEST(RemovedMotionTest, ASilenceOfAYearNeedsNoMemory) {
+  HandMotion hand;
+  hand.duration = 4.0;
+  Truth truth = move(hand);
+  for (std::size_t k = truth.time.size() / 2; k < truth.time.size(); ++k) truth.time[k] += 3e7;
+  const SmoothedMotion motion = smoothMotion(truth.time, truth.measured);
+  EXPECT_TRUE(motion.acceleration.allFinite());
+  EXPECT_TRUE(deviations(motion, 2).allFinite());
+}
+
 TEST(RemovedMotionTest, TheCovarianceStaysOne) {
   const Truth truth = move(HandMotion());
   const SmoothedMotion motion = smoothMotion(truth.time, truth.measured);
