@@ -54,7 +54,9 @@ TEST(HumanTorqueAccuracyTest, IsAsSureAsItSays) {
     teaching.position_noise = noise;
     const TaughtRecording recording = teach(teaching);
     const Demonstration result = recovered(recording);
-    if (noise == 1e-4) EXPECT_LT(percentOff(recording, jointColumns(result, "tau_h_")), 0.55);
+    if (noise == 1e-4) {
+      EXPECT_LT(percentOff(recording, jointColumns(result, "tau_h_")), 0.55);
+    }
     const Eigen::ArrayXXd error =
         (jointColumns(result, "tau_h_") - recording.torque).array() / jointColumns(result, "tau_h_std_").array();
     EXPECT_GT((error.abs() <= 2.0).cast<double>().mean(), 0.93);
