@@ -139,10 +139,10 @@ class TimeConstantSearch {
 /// not being large.
 class LivelinessSearch {
  public:
-  /// `r`: variance of the measurements.
+  /// `r`: variance of the measurements; `jumps`: that of the acceleration's, over r, or empty.
   LivelinessSearch(const std::vector<double>& time, const Eigen::VectorXd& position, double interval, double T,
-                   double r)
-      : time_(time), position_(position), interval_(interval), T_(T), r_(r) {}
+                   double r, const Eigen::VectorXd& jumps)
+      : time_(time), position_(position), interval_(interval), T_(T), r_(r), jumps_(jumps) {}
 
   /// The factor on the snap density before each sample; empty: the record is too short, or free of noise.
   std::vector<double> search() const {
@@ -152,7 +152,9 @@ class LivelinessSearch {
     if (count < 3 || !(r_ > 0.0)) return {};
     Eigen::MatrixXd likelihood(kSteps, count);
     for (int step = 0; step < kSteps; ++step) {
-      RandomSnapFilter filter(time_, position_, interval_, T_ * std::pow(kLivelyStep, step));
+      const double T = T_ * std::pow(kLivelyStep, step);
+      RandomSnapFilter filter(time_, position_, interval_, T);
+      filter.setJumps(std::pow(T, 4) * jumps_);
       const std::vector<double> pieces = filter.pieceLogLikelihoods(samples, r_);
       likelihood.row(step) = Eigen::Map<const Eigen::RowVectorXd>(pieces.data(), static_cast<Index>(count));
     }
@@ -225,23 +227,62 @@ class LivelinessSearch {
   const double interval_;
   const double T_;
   const double r_;
+  const Eigen::VectorXd& jumps_;
 };
+
+/// With a T that is known, and r about so. `jump_variance` may be empty.
+SmoothedMotion smoothed(const std::vector<double>& time, const Eigen::VectorXd& position, double interval, double T,
+                        const Eigen::VectorXd& jump_variance, double about_r, JumpEvidence* evidence) {
+  const auto scaled = [&](double r) -> Eigen::VectorXd {
+    constexpr double kAnything = 1e10;  // in units of r/T⁴: more makes no difference
+    return (std::pow(T, 4) / r * jump_variance).cwiseMin(kAnything);
+  };
+  RandomSnapFilter uniform(time, position, interval, T);
+  uniform.setJumps(scaled(about_r));
+  uniform.run(0, time.size());
+  const double r = uniform.variance();
+  const Eigen::VectorXd over_r = std::pow(T, -4) * scaled(r);
+  RandomSnapFilter filter(time, position, interval, T);
+  const std::vector<double> liveliness = LivelinessSearch(time, position, interval, T, r, over_r).search();
+  filter.setLiveliness(liveliness);
+  filter.setJumps(scaled(r));
+  SmoothedMotion motion = filter.smooth(r, evidence);
+  addRemovedMotion(time, position, interval, liveliness, motion);
+  return motion;
+}
+
+SmoothedMotion smoothed(const std::vector<double>& time, const Eigen::VectorXd& position, JumpEvidence* evidence) {
+  require(time, position);
+  const double interval = usualInterval(time);
+  const double T = TimeConstantSearch(time, position, interval).search();
+  return smoothed(time, position, interval, T, Eigen::VectorXd(), /*about_r=*/1.0, evidence);
+}
 
 }  // namespace
 
 SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position) {
+  return smoothed(time, position, nullptr);
+}
+
+SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position, JumpEvidence& evidence) {
+  return smoothed(time, position, &evidence);
+}
+
+SmoothedMotion smoothMotionAgain(const std::vector<double>& time, const Eigen::VectorXd& position,
+                                 const SmoothedMotion& before, const Eigen::VectorXd& jump_variance) {
   require(time, position);
-  const double interval = usualInterval(time);
-  const double T = TimeConstantSearch(time, position, interval).search();
-  RandomSnapFilter uniform(time, position, interval, T);
-  uniform.run(0, time.size());
-  const double r = uniform.variance();
-  RandomSnapFilter filter(time, position, interval, T);
-  const std::vector<double> liveliness = LivelinessSearch(time, position, interval, T, r).search();
-  filter.setLiveliness(liveliness);
-  SmoothedMotion motion = filter.smooth(r);
-  addRemovedMotion(time, position, interval, liveliness, motion);
-  return motion;
+  if (jump_variance.size() != position.size()) {
+    throw Error("smoothing: there are " + std::to_string(jump_variance.size()) + " variances of jumps for " +
+                std::to_string(position.size()) + " positions, expected as many.");
+  }
+  for (Index k = 0; k < jump_variance.size(); ++k) {
+    if (std::isfinite(jump_variance[k]) && jump_variance[k] >= 0.0) continue;
+    throw Error("smoothing: the variance of the jump before sample " + std::to_string(k) + " is " +
+                print(jump_variance[k]) + ", expected a number of at least 0.");
+  }
+  const double r = std::pow(before.measurement_deviation, 2);
+  if (!(r > 0.0)) return before;
+  return smoothed(time, position, usualInterval(time), before.time_constant, jump_variance, r, nullptr);
 }
 
 SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position, double time_constant) {

@@ -73,8 +73,10 @@ const RandomSnapFilter::Step& RandomSnapFilter::stepTo(std::size_t k) const {
   constexpr double kAlike = 1e-9;  // of a duration; what adding up doubles costs at most
   const double duration = time_[k] - time_[k - 1];
   const double liveliness = liveliness_.empty() ? 1.0 : liveliness_[k];
-  if (std::abs(duration - step_.duration) > kAlike * duration || liveliness != step_.liveliness) {
-    step_ = {duration, liveliness, transition(duration), liveliness * processNoise(duration)};
+  const double jump = jumps_.size() == 0 ? 0.0 : jumps_[static_cast<Eigen::Index>(k)];
+  if (std::abs(duration - step_.duration) > kAlike * duration || liveliness != step_.liveliness || jump != step_.jump) {
+    step_ = {duration, liveliness, jump, transition(duration), liveliness * processNoise(duration)};
+    step_.Q(2, 2) += jump;
   }
   return step_;
 }
@@ -166,7 +168,17 @@ double RandomSnapFilter::logLikelihood() const {
   return -0.5 * (n * std::log(2.0 * kPi * variance()) + n + sumOfLogarithms());
 }
 
-SmoothedMotion RandomSnapFilter::smooth(std::optional<double> known_r) {
+/// The likelihood of a jump δ is that of a state whose expectation is off by it: with the covariance P of what came
+/// before, the samples from k on say that the state is off by u = (1 + Y P)⁻¹ (y − Y ξ), as information (1 + Y P)⁻¹ Y.
+std::pair<double, double> RandomSnapFilter::evidenceOfJump(Knowledge before, std::size_t k, const Matrix& Y,
+                                                           const Vector& y) const {
+  if (before.is_information) return {0.0, 0.0};
+  predict(before, k);
+  const Eigen::PartialPivLU<Matrix> together(Matrix::Identity() + Y * before.matrix);
+  return {together.solve(y - Y * before.vector)[2], together.solve(Y)(2, 2)};
+}
+
+SmoothedMotion RandomSnapFilter::smooth(std::optional<double> known_r, JumpEvidence* evidence) {
   const std::size_t count = time_.size();
   std::vector<Knowledge> until(count);  // each sample, and with it
   filter(0, count, [&](std::size_t k, const Knowledge& knowledge) { until[k] = knowledge; });
@@ -182,6 +194,7 @@ SmoothedMotion RandomSnapFilter::smooth(std::optional<double> known_r) {
   motion.velocity.resize(rows);
   motion.acceleration.resize(rows);
   motion.covariance.resize(count);
+  if (evidence) evidence->score = evidence->information = Eigen::VectorXd::Zero(rows);
 
   const Eigen::Vector3d units(1.0, 1.0 / T_, 1.0 / (T_ * T_));
   Matrix Y = Matrix::Zero();  // what the samples after k say
@@ -208,6 +221,11 @@ SmoothedMotion RandomSnapFilter::smooth(std::optional<double> known_r) {
     if (const double position = position_[row]; !std::isnan(position)) {
       Y(0, 0) += 1.0;
       y[0] += position;
+    }
+    if (evidence && r > 0.0) {
+      const auto [score, information] = evidenceOfJump(until[k - 1], k, Y, y);
+      evidence->score[row] = T_ * T_ / r * score;
+      evidence->information[row] = std::pow(T_, 4) / r * information;
     }
     const Step& step = stepTo(k);
     const Eigen::PartialPivLU<Matrix> blurred(Matrix::Identity() + Y * step.Q);

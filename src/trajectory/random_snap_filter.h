@@ -18,7 +18,8 @@ namespace demo_logger {
 /// information too; together they give the smoothed motion (Fraser and Potter 1969), without any difference of large
 /// numbers.
 ///
-/// A motion need not be as lively all the time: its snap density may be given a factor for each step.
+/// A motion need not be as lively all the time: its snap density may be given a factor for each step. Nor need its
+/// acceleration be continuous: at given samples it may jump.
 class RandomSnapFilter {
  public:
   /// References are kept. `interval` is the usual one Δt [s].
@@ -27,6 +28,10 @@ class RandomSnapFilter {
 
   /// On the snap density before each sample, relative to that of T; of the first sample it does not matter.
   void setLiveliness(std::vector<double> factors) { liveliness_ = std::move(factors); }
+
+  /// What the acceleration's variance gains at each sample beside the random snap, in units of r/T⁴; of the first
+  /// sample it does not matter. Empty: nothing.
+  void setJumps(Eigen::VectorXd variances) { jumps_ = std::move(variances); }
 
   /// Runs over samples [first, last) and adds up what the likelihood needs.
   void run(std::size_t first, std::size_t last);
@@ -39,8 +44,9 @@ class RandomSnapFilter {
   double variance() const;
   double logLikelihood() const;
 
-  /// Runs over everything, then smooths. The measurements' variance r is `variance()` if none is given.
-  SmoothedMotion smooth(std::optional<double> r = std::nullopt);
+  /// Runs over everything, then smooths. The measurements' variance r is `variance()` if none is given. What the
+  /// samples say of jumps goes to `evidence`, if it is asked for.
+  SmoothedMotion smooth(std::optional<double> r = std::nullopt, JumpEvidence* evidence = nullptr);
 
  private:
   using Vector = Eigen::Vector4d;
@@ -61,6 +67,8 @@ class RandomSnapFilter {
   /// `count`: how many samples were measured before.
   void measure(Knowledge& knowledge, double position, std::size_t count);
   void addUp(double innovation, double variance);
+  /// What (Y, y), of the samples from k on, says of a jump right before k, in units of T.
+  std::pair<double, double> evidenceOfJump(Knowledge before, std::size_t k, const Matrix& Y, const Vector& y) const;
 
   Matrix transition(double duration) const;
   Matrix processNoise(double duration) const;
@@ -68,6 +76,7 @@ class RandomSnapFilter {
   struct Step {
     double duration = 0.0;
     double liveliness = 1.0;
+    double jump = 0.0;
     Matrix F = Matrix::Identity();
     Matrix Q = Matrix::Zero();
   };
@@ -80,6 +89,7 @@ class RandomSnapFilter {
   const double T_;
 
   std::vector<double> liveliness_;  // empty: 1
+  Eigen::VectorXd jumps_;           // empty: 0
   mutable Step step_;
 
   std::size_t innovations_ = 0;

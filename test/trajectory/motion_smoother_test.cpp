@@ -85,7 +85,16 @@ double kernel(double a, double b, int da, int db) {
   return 0.5 * end * sum;
 }
 
-Dense densePosterior(const std::vector<double>& time, const Eigen::VectorXd& z, double S, double r) {
+/// What a jump of the acceleration by 1 at `from` adds to a derivative at t.
+double ofJump(double t, double from, int derivative) {
+  const double s = t - from;
+  if (s < 0.0) return 0.0;
+  return derivative == 0 ? 0.5 * s * s : derivative == 1 ? s : 1.0;
+}
+
+/// `jump`: a sample before which the acceleration jumps, with that variance.
+Dense densePosterior(const std::vector<double>& time, const Eigen::VectorXd& z, double S, double r,
+                     Eigen::Index jump = 0, double jump_variance = 0.0) {
   const auto n = static_cast<Eigen::Index>(time.size());
   const auto t = [&](Eigen::Index k) { return time[static_cast<std::size_t>(k)] - time.front(); };
   Eigen::MatrixXd K(n, n);
@@ -102,7 +111,9 @@ Dense densePosterior(const std::vector<double>& time, const Eigen::VectorXd& z, 
   };
   for (Eigen::Index i = 0; i < n; ++i) {
     P.row(i) = row(i, 0);
-    for (Eigen::Index j = 0; j < n; ++j) K(i, j) = S * kernel(t(i), t(j), 0, 0);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      K(i, j) = S * kernel(t(i), t(j), 0, 0) + jump_variance * ofJump(t(i), t(jump), 0) * ofJump(t(j), t(jump), 0);
+    }
   }
   K.diagonal().array() += r;
   const Eigen::LLT<Eigen::MatrixXd> factors(K);
@@ -114,11 +125,12 @@ Dense densePosterior(const std::vector<double>& time, const Eigen::VectorXd& z, 
   for (int d = 0; d < 3; ++d) {
     for (Eigen::Index i = 0; i < n; ++i) {
       Eigen::VectorXd k(n);
-      for (Eigen::Index j = 0; j < n; ++j) k[j] = S * kernel(t(i), t(j), d, 0);
+      const double jumped = jump_variance * ofJump(t(i), t(jump), d);
+      for (Eigen::Index j = 0; j < n; ++j) k[j] = S * kernel(t(i), t(j), d, 0) + jumped * ofJump(t(j), t(jump), 0);
       dense.mean(d, i) = row(i, d) * beta + k.dot(weights);
       const Eigen::Vector4d rest = row(i, d).transpose() - KinvP.transpose() * k;
-      dense.deviation(d, i) =
-          std::sqrt(S * kernel(t(i), t(i), d, d) - k.dot(factors.solve(k)) + rest.dot(information.ldlt().solve(rest)));
+      dense.deviation(d, i) = std::sqrt(S * kernel(t(i), t(i), d, d) + jumped * ofJump(t(i), t(jump), d) -
+                                        k.dot(factors.solve(k)) + rest.dot(information.ldlt().solve(rest)));
     }
   }
   return dense;
@@ -142,6 +154,68 @@ TEST(MotionSmootherTest, AgreesWithThePosteriorByLinearAlgebraOverAllSamples) {
       EXPECT_NEAR(std::sqrt(covariance(d, d)) / dense.deviation(d, k), 1.0, 1e-3) << d << " at " << k;
     }
   }
+}
+
+TEST(MotionSmootherTest, AJumpAtAKnownInstantIsExactlyAsLinearAlgebraHasIt) {
+  const std::vector<double> time = irregularTimes(60, 0.02, 2);
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1e-3);
+  constexpr Eigen::Index kJump = 31;
+  constexpr double kVariance = 9.0;  // [rad²/s⁴]
+  Eigen::VectorXd position(60);
+  for (int k = 0; k < 60; ++k) {
+    const double t = time[static_cast<std::size_t>(k)];
+    position[k] = std::sin(3.0 * t) + 4.0 * ofJump(t, time[kJump], 0) + noise(random);
+  }
+  const SmoothedMotion before = smoothMotion(time, position, 0.08);
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(60);
+  variance[kJump] = kVariance;
+  const SmoothedMotion motion = smoothMotionAgain(time, position, before, variance);
+  EXPECT_EQ(motion.time_constant, before.time_constant);
+  const Dense dense =
+      densePosterior(time, position, motion.snap_density, std::pow(motion.measurement_deviation, 2), kJump, kVariance);
+  for (int k = 0; k < 60; ++k) {
+    const Eigen::Matrix3d& covariance = motion.covariance[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(motion.acceleration[k], dense.mean(2, k), 1e-3 * dense.deviation(2, k)) << k;
+    for (int d = 0; d < 3; ++d) {
+      EXPECT_NEAR(std::sqrt(covariance(d, d)) / dense.deviation(d, k), 1.0, 1e-3) << d << " at " << k;
+    }
+  }
+}
+
+TEST(MotionSmootherTest, TheEvidenceOfAJumpIsTheLikelihoodOfOne) {
+  const std::vector<double> time = irregularTimes(60, 0.02, 2);
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1e-3);
+  Eigen::VectorXd position(60);
+  for (int k = 0; k < 60; ++k) {
+    const double t = time[static_cast<std::size_t>(k)];
+    position[k] = std::sin(3.0 * t) + 4.0 * ofJump(t, time[31], 0) + noise(random);
+  }
+  JumpEvidence evidence;
+  const SmoothedMotion motion = smoothMotion(time, position, evidence);
+  // z ~ N(P β, K), β free: with A = K⁻¹ − K⁻¹ P (Pᵀ K⁻¹ P)⁻¹ Pᵀ K⁻¹ and the jump's effect c, score = cᵀ A z and
+  // information = cᵀ A c.
+  Eigen::MatrixXd K(60, 60);
+  Eigen::MatrixXd P(60, 4);
+  const auto t = [&](Eigen::Index k) { return time[static_cast<std::size_t>(k)] - time.front(); };
+  for (Eigen::Index i = 0; i < 60; ++i) {
+    P.row(i) << 1.0, t(i), t(i) * t(i), std::pow(t(i), 3);
+    for (Eigen::Index j = 0; j < 60; ++j) K(i, j) = motion.snap_density * kernel(t(i), t(j), 0, 0);
+  }
+  K.diagonal().array() += std::pow(motion.measurement_deviation, 2);
+  const Eigen::MatrixXd inverse = K.ldlt().solve(Eigen::MatrixXd::Identity(60, 60));
+  const Eigen::MatrixXd A = inverse - inverse * P * (P.transpose() * inverse * P).ldlt().solve(P.transpose() * inverse);
+  for (const Eigen::Index jump : {20, 31, 45}) {
+    Eigen::VectorXd c(60);
+    for (Eigen::Index k = 0; k < 60; ++k) c[k] = ofJump(t(k), t(jump), 0);
+    EXPECT_NEAR(evidence.score[jump], c.dot(A * position), 1e-3 * std::sqrt(c.dot(A * c))) << jump;
+    EXPECT_NEAR(evidence.information[jump] / c.dot(A * c), 1.0, 1e-3) << jump;
+  }
+  const Eigen::VectorXd gain = evidence.score.array().square() / evidence.information.array().max(1e-300);
+  Eigen::Index best = 0;
+  gain.segment(10, 40).maxCoeff(&best);
+  EXPECT_NEAR(static_cast<double>(best + 10), 31.0, 1.0) << "where it was";
 }
 
 TEST(MotionSmootherTest, FindsTheNoiseOfTheEncoderByItself) {
@@ -225,6 +299,19 @@ TEST(MotionSmootherTest, RefusesWhatItCannotSmoothInASentence) {
   EXPECT_EQ(messageOf(ten, position),
             "smoothing: 3 positions were measured, expected at least 8 to tell an acceleration from noise.");
   EXPECT_THROW(smoothMotion(ten, Eigen::VectorXd::Zero(10), 0.0), ConfigurationError);
+  const auto messageOfJumps = [&](const Eigen::VectorXd& variance) -> std::string {
+    const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(10, 0.0, 1.0);
+    try {
+      smoothMotionAgain(ten, ramp, smoothMotion(ten, ramp), variance);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(messageOfJumps(Eigen::VectorXd::Zero(9)),
+            "smoothing: there are 9 variances of jumps for 10 positions, expected as many.");
+  EXPECT_EQ(messageOfJumps(Eigen::VectorXd::Constant(10, -1.0)),
+            "smoothing: the variance of the jump before sample 0 is -1, expected a number of at least 0.");
 }
 
 }  // namespace

@@ -40,6 +40,24 @@ SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::Vector
 /// The same with a given T [s], all through; the covariance is the posterior's alone.
 SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position, double time_constant);
 
+/// What the samples say of a jump of the acceleration right before each of them: one by δ [rad/s² or m/s²] would change
+/// the logarithm of their likelihood by score · δ − information · δ² / 2. Zero where too little is known.
+struct JumpEvidence {
+  Eigen::VectorXd score;
+  Eigen::VectorXd information;
+};
+
+/// The same as the first, with that evidence.
+SmoothedMotion smoothMotion(const std::vector<double>& time, const Eigen::VectorXd& position, JumpEvidence& evidence);
+
+/// Smooths again what came out `before`, where the acceleration is now known to jump, as it does when a joint's
+/// friction turns round: right before each sample by a Gaussian of `jump_variance` [rad²/s⁴ or m²/s⁴], 0 at most of
+/// them. Where it jumps is known exactly; how far, as well as the positions tell. T stays; r and how lively the motion
+/// is in each piece are found anew. Without noise all stays as it was. Throws Error where the variances differ in
+/// number from the times, or are not all finite and at least 0.
+SmoothedMotion smoothMotionAgain(const std::vector<double>& time, const Eigen::VectorXd& position,
+                                 const SmoothedMotion& before, const Eigen::VectorXd& jump_variance);
+
 constexpr int kFewestSamples = 8;
 
 }  // namespace demo_logger
