@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/motion_smoother.h"
 #include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
 #include "effort_series.h"
+#include "friction_jumps.h"
 #include "joint_columns.h"
 
 namespace demo_logger {
@@ -114,8 +116,37 @@ std::vector<RowRange> rangesWithoutSilence(const std::vector<double>& time, cons
   return ranges;
 }
 
+namespace {
+
+/// `position`: rows x joints, at the times.
+std::vector<SmoothedMotion> smoothJoints(const std::vector<double>& time, const Eigen::MatrixXd& position) {
+  std::vector<SmoothedMotion> motions;
+  for (Index i = 0; i < position.cols(); ++i) motions.push_back(smoothMotion(time, position.col(i)));
+  return motions;
+}
+
+/// As the friction of the joints makes them move.
+std::vector<SmoothedMotion> smoothJoints(const std::vector<double>& time, const Eigen::MatrixXd& position,
+                                         const RobotModel& model) {
+  std::vector<JointInMotion> joints(static_cast<std::size_t>(position.cols()));
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    joints[i].motion = smoothMotion(time, position.col(static_cast<Index>(i)), joints[i].jumps);
+  }
+  const Eigen::MatrixXd jumps = frictionJumps(model, time, joints);
+  std::vector<SmoothedMotion> motions;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const auto column = static_cast<Index>(i);
+    const bool jumps_never = jumps.col(column).isZero(0.0);
+    motions.push_back(jumps_never ? std::move(joints[i].motion)
+                                  : smoothMotionAgain(time, position.col(column), joints[i].motion, jumps.col(column)));
+  }
+  return motions;
+}
+
+}  // namespace
+
 ArmMotion smoothArm(const std::vector<double>& time, const RecordedJoints& joints, const RowRange& range,
-                    const EffortMetadata& meaning, MeasuredEfforts efforts) {
+                    const EffortMetadata& meaning, MeasuredEfforts efforts, const RobotModel* model) {
   ArmMotion motion;
   motion.first_row = range.first;
   motion.time.assign(time.begin() + static_cast<std::ptrdiff_t>(range.first),
@@ -127,8 +158,12 @@ ArmMotion smoothArm(const std::vector<double>& time, const RecordedJoints& joint
   motion.velocity_variance = motion.acceleration_variance = Eigen::MatrixXd(rows, n);
   if (joints.effort.size() > 0) motion.effort = motion.effort_variance = Eigen::MatrixXd(rows, n);
   motion.noise.resize(n);
+  const Eigen::MatrixXd positions = joints.position.middleRows(first, rows);
+  const std::vector<SmoothedMotion> motions = model && hasFriction(model->description())
+                                                  ? smoothJoints(motion.time, positions, *model)
+                                                  : smoothJoints(motion.time, positions);
   for (Index i = 0; i < n; ++i) {
-    const SmoothedMotion joint = smoothMotion(motion.time, joints.position.col(i).segment(first, rows));
+    const SmoothedMotion& joint = motions[static_cast<std::size_t>(i)];
     motion.position.col(i) = joint.position;
     motion.velocity.col(i) = joint.velocity;
     motion.acceleration.col(i) = joint.acceleration;

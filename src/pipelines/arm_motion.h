@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "demo_logger/robot/robot_description.h"
+#include "demo_logger/robot/robot_model.h"
 #include "demo_logger/trajectory/demonstration.h"
 
 namespace demo_logger {
@@ -44,10 +45,12 @@ struct ArmMotion {
   Eigen::MatrixXd effort, effort_variance;  // what the efforts say of the torque at the stamps; empty without efforts
   Eigen::VectorXd noise;                    // per joint, standard deviation of a measured position
 };
-/// Measured efforts are smoothed as the positions are, or left as they were measured (with no variance then).
+/// Measured efforts are smoothed as the positions are, or left as they were measured (with no variance then). With the
+/// model of an arm whose joints have friction, accelerations jump where that holds a joint or turns round.
 enum class MeasuredEfforts { smoothed, raw };
 ArmMotion smoothArm(const std::vector<double>& time, const RecordedJoints& joints, const RowRange& range,
-                    const EffortMetadata& meaning, MeasuredEfforts efforts = MeasuredEfforts::smoothed);
+                    const EffortMetadata& meaning, MeasuredEfforts efforts = MeasuredEfforts::smoothed,
+                    const RobotModel* model = nullptr);
 
 /// sign(q̇) as far as it is known: its mean and variance for a velocity with a standard deviation. With a friction
 /// velocity v > 0, tanh(q̇ / v) instead.

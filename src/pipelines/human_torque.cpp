@@ -9,6 +9,7 @@
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
+#include "friction_share.h"
 #include "joint_columns.h"
 #include "joint_notes.h"
 
@@ -60,8 +61,11 @@ class Recovery {
     acceleration.middleRows(first, rows) = motion.acceleration;
     noise_squares_ += static_cast<double>(rows) * motion.noise.cwiseAbs2();
     rows_ += static_cast<double>(rows);
+    usual_velocity_ = motion.velocity.colwise().norm() / std::sqrt(static_cast<double>(rows));
     for (Index k = 0; k < rows; ++k) recoverRow(first + k, k, motion);
   }
+
+  const RobotModel& model() const { return model_; }
 
   /// Root of the mean square over all segments.
   std::vector<double> encoderNoise() const {
@@ -99,10 +103,10 @@ class Recovery {
     for (Index i = 0; i < n_; ++i) {
       const ArmJoint& joint = model_.description().joints[static_cast<std::size_t>(i)];
       const double deviation = velocity_deviation[i];
-      const VelocitySign sign = signOf(dq[i], deviation, joint.friction_velocity);
-      result[i] += joint.motor_inertia * ddq[i] + joint.damping * dq[i] + joint.friction * sign.mean;
+      const FrictionShare share = frictionShare(dq[i], deviation, joint.friction_velocity, usual_velocity_[i]);
+      result[i] += joint.motor_inertia * ddq[i] + joint.damping * dq[i] + joint.friction * share.mean;
       inertia(i, i) += joint.motor_inertia;
-      uncertain[i] += std::pow(joint.damping * deviation, 2) + joint.friction * joint.friction * sign.variance;
+      uncertain[i] += std::pow(joint.damping * deviation, 2) + joint.friction * joint.friction * share.variance;
     }
   }
 
@@ -129,6 +133,7 @@ class Recovery {
   const Index n_;
   const Eigen::VectorXd bias_;
   Eigen::VectorXd noise_squares_;
+  Eigen::VectorXd usual_velocity_;  // of each joint, within the range
   double rows_ = 0.0;
 };
 
@@ -184,7 +189,8 @@ HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demon
   Recovery recovery(arm, meaning, has_efforts, joints.position.rows());
   for (const RowRange& range :
        rangesWithoutSilence(demonstration.time, joints.position, options.max_gap, summary.notes)) {
-    recovery.recover(smoothArm(demonstration.time, joints, range, meaning));
+    recovery.recover(
+        smoothArm(demonstration.time, joints, range, meaning, MeasuredEfforts::smoothed, &recovery.model()));
   }
 
   const Index n = joints.position.cols();

@@ -31,11 +31,14 @@ struct HumanTorqueSummary {
 ///   τ_h = M(q) q̈ + C(q, q̇) q̇ + g(q) − τ_link                                 efforts measured at the links
 /// q, q̇, q̈ come from smoothMotion at the true stamps. An effort that was held (a command from its tick to the next)
 /// acts half a control period h late: it is taken at t − h/2. One that was measured at an instant is smoothed as the
-/// positions are. Where the sign of q̇ is in doubt, friction is as uncertain as it is large. Drives and loads of `robot`
-/// count; it may be given others by withDrives and withLoad.
+/// positions are. Drives and loads of `robot` count; it may be given others by withDrives and withLoad.
+///
+/// Friction that holds is counted with. As a joint comes to a stand or turns round, its friction changes at once, and so
+/// do the accelerations of all joints that move: they are smoothed as such, with jumps there. A joint that stands hides
+/// anything from −F to F of torque: 0 is taken for that, with the deviation F/√3.
 ///
 /// Adds, or replaces: `tau_h_<joint>`, `tau_h_std_<joint>` (standard deviation of each, which tells the noise of
-/// encoders and torque sensors, not an error of the model), `dq_<joint>` and `ddq_<joint>` (smoothed), and at the tool,
+/// encoders and torque sensors and what friction hides, not an error of the model), `dq_<joint>` and `ddq_<joint>` (smoothed), and at the tool,
 /// in base axes, the force that explains the torques best, F = (Jᵀ)⁺ τ_h: `tool_fx … tool_tz`, with `tool_condition`,
 /// the ratio of the largest singular value of J to the smallest (metres beside radians): large near a singular posture,
 /// where F says little. NaN where nothing can be said: within silences longer than max_gap, where fewer than
