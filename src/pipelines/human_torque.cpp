@@ -65,7 +65,9 @@ class Recovery {
     for (Index k = 0; k < rows; ++k) recoverRow(first + k, k, motion);
   }
 
-  const RobotModel& model() const { return model_; }
+  /// The model, if its friction counts. Where efforts were measured behind the friction, they jump as the accelerations
+  /// do, and what smoothing does to both cancels.
+  const RobotModel* modelWithFriction() const { return shows_drives_ ? &model_ : nullptr; }
 
   /// Root of the mean square over all segments.
   std::vector<double> encoderNoise() const {
@@ -190,7 +192,7 @@ HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demon
   for (const RowRange& range :
        rangesWithoutSilence(demonstration.time, joints.position, options.max_gap, summary.notes)) {
     recovery.recover(
-        smoothArm(demonstration.time, joints, range, meaning, MeasuredEfforts::smoothed, &recovery.model()));
+        smoothArm(demonstration.time, joints, range, meaning, MeasuredEfforts::smoothed, recovery.modelWithFriction()));
   }
 
   const Index n = joints.position.cols();

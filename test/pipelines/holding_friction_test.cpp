@@ -130,6 +130,27 @@ TEST(HoldingFrictionTest, TheTorqueOfAJointThatComesToAStandAndBreaksLooseIsWith
   }
 }
 
+TEST(HoldingFrictionTest, ASensorBehindTheFrictionJumpsWithTheAccelerationSoThatBothMayBeSmoothedAlike) {
+  const Pull pull{0.2, 1.2, 2.0};
+  Demonstration result = record(pull, 1.0);
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  for (Index k = 0; k < result.values.rows(); ++k) {
+    const double t = 1e-3 * static_cast<double>(k);
+    const double friction = t < pull.arrives() ? kFriction : t < pull.leaves() ? pull.torque(t) : -kFriction;
+    result.values(k, 1) = noise(random) - friction;
+  }
+  result.metadata.effort.side = "link";
+  result.metadata.effort.timing = "instant";
+  Demonstration blind = result;
+  addHumanTorque(turntable(kFriction), result);
+  addHumanTorque(turntable(0.0), blind);
+  EXPECT_EQ(column(result, "tau_h_turn"), column(blind, "tau_h_turn"));
+  const double from = pull.arrives() - 0.05;
+  const double to = pull.arrives() + 0.05;
+  EXPECT_LT(errorOf(result, pull, from, to), 0.02 * kFriction);
+}
+
 TEST(HoldingFrictionTest, AJointThatStandsHidesWhatItsFrictionHolds) {
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0.0, 1e-5);

@@ -33,7 +33,7 @@ struct HumanTorqueSummary {
 /// acts half a control period h late: it is taken at t − h/2. One that was measured at an instant is smoothed as the
 /// positions are. Drives and loads of `robot` count; it may be given others by withDrives and withLoad.
 ///
-/// Friction that holds is counted with. As a joint comes to a stand or turns round, its friction changes at once, and so
+/// Where friction counts, so does that it holds. As a joint comes to a stand or turns round, its friction changes at once, and so
 /// do the accelerations of all joints that move: they are smoothed as such, with jumps there. A joint that stands hides
 /// anything from −F to F of torque: 0 is taken for that, with the deviation F/√3.
 ///
