@@ -104,7 +104,8 @@ std::string whyUndetermined(const FitResult& result, const FitOptions& options) 
            " in which an effort tells something (a joint that friction holds still does not), " + expected;
   }
   return "only " + found + " can be taken as free of a hand's touch, " + expected +
-         " that one payload, torque bias and friction explain to within " + print(100.0 * options.model_error) +
+         ", a second of it in one piece, that one payload, torque bias and friction explain to within " +
+         print(100.0 * options.model_error) +
          " % of what the joints usually bear; say where no hand is (--hand-free FROM:TO), or allow the model to be "
          "worse (--model-error)";
 }

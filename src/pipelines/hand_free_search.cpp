@@ -1,6 +1,7 @@
 #include "hand_free_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -12,9 +13,9 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kWindow = 0.25;         // [s]
-constexpr std::size_t kSeedWindows = 8;  // a stretch that the search starts from
-constexpr std::size_t kMostSeeds = 60;   // spread over the recordings
+constexpr double kWindow = 0.25;                             // [s]
+constexpr std::array<std::size_t, 2> kSeedWindows = {8, 4};  // a stretch to start from; a shorter one if none is free
+constexpr std::size_t kMostSeeds = 60;                       // spread over the recordings
 constexpr std::size_t kShortestRun = 3;  // windows; a hand that passes through its own mean is not away
 constexpr int kMostRounds = 15;
 constexpr int kTightenings = 3;
@@ -59,9 +60,12 @@ class Search {
 
   std::vector<bool> largest() {
     std::vector<bool> best(windows_.size(), false);
-    for (const std::size_t seed : seeds()) {
-      const std::vector<bool> grown = grow(seed);
-      if (said(grown) > said(best)) best = grown;
+    for (const std::size_t length : kSeedWindows) {
+      for (const std::size_t seed : seeds(length)) {
+        const std::vector<bool> grown = grow(seed, length);
+        if (said(grown) > said(best)) best = grown;
+      }
+      if (said(best) > 0) break;
     }
     return usual(rowsOf(best));
   }
@@ -94,10 +98,10 @@ class Search {
     return count;
   }
 
-  std::vector<std::size_t> seeds() const {
+  std::vector<std::size_t> seeds(std::size_t length) const {
     std::vector<std::size_t> possible;
-    for (std::size_t w = 0; w + kSeedWindows <= windows_.size(); w += kSeedWindows / 4) {
-      if (windows_[w].range == windows_[w + kSeedWindows - 1].range) possible.push_back(w);
+    for (std::size_t w = 0; w + length <= windows_.size(); w += length / 4) {
+      if (windows_[w].range == windows_[w + length - 1].range) possible.push_back(w);
     }
     std::vector<std::size_t> seeds;
     const std::size_t stride = (possible.size() + kMostSeeds - 1) / kMostSeeds;
@@ -151,9 +155,9 @@ class Search {
     return chosen;
   }
 
-  std::vector<bool> grow(std::size_t seed) const {
+  std::vector<bool> grow(std::size_t seed, std::size_t length) const {
     std::vector<bool> chosen(windows_.size(), false);
-    for (std::size_t w = seed; w < seed + kSeedWindows; ++w) chosen[w] = true;
+    for (std::size_t w = seed; w < seed + length; ++w) chosen[w] = true;
     for (int round = 0; round < kMostRounds; ++round) {
       std::vector<bool> next = explained(solve(chosen));
       if (next == chosen || said(next) == 0) return next;

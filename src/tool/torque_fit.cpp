@@ -150,8 +150,12 @@ void TorqueModel::say(const FitResult& result, std::size_t recordings) const {
   for (const std::string& finding : result.findings) std::cout << "  " << finding << '\n';
   std::cout << "  what is left there, from joint to joint (root mean square; before the fit):";
   for (std::size_t i = 0; i < result.residual.size(); ++i) {
-    std::cout << (i == 0 ? " " : ", ") << print(result.residual[i], 3) << " (" << print(result.residual_start[i], 3)
-              << ")";
+    std::cout << (i == 0 ? " " : ", ");
+    if (std::isnan(result.residual[i])) {
+      std::cout << "nothing told";
+    } else {
+      std::cout << print(result.residual[i], 3) << " (" << print(result.residual_start[i], 3) << ")";
+    }
   }
   std::cout << " N m or N\n";
   for (const std::string& doubt : result.doubts) std::cout << "  " << doubt << '\n';

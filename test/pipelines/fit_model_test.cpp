@@ -190,6 +190,41 @@ TEST(FitModelTest, AHandThatNeverLetsGoLeavesNothingToFit) {
   EXPECT_TRUE(fit.calibration.joints.empty());
 }
 
+TEST(FitModelTest, ShortPartsWithoutAHandAddUpWhereNoneLastsTwoSeconds) {
+  Scene scene;
+  scene.side = "link";
+  scene.arm = claimedArm();
+  scene.duration = 7.0;
+  scene.hand = handWithin(1.4, 5.4);
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    const Demonstration recording = record(scene, seed);
+    const FitResult fit = fitModel(claimedArm(), {&recording});
+    ASSERT_EQ(fit.undetermined, "") << seed;
+    EXPECT_GT(fit.duration, 2.2) << seed;
+    for (const FitResult::Part& part : fit.hand_free) {
+      EXPECT_TRUE(part.span.to < 1.7 || part.span.from > 5.1) << part.span.from << " to " << part.span.to;
+    }
+  }
+}
+
+TEST(FitModelTest, ShortPartsAreNotFoundUnderAHandThatNeverLetsGo) {
+  Scene scene;
+  scene.hand = [](double) { return 1.0; };
+  for (const std::string side : {"motor", "link"}) {
+    scene.side = side;
+    for (const double duration : {6.0, 20.0}) {
+      scene.duration = duration;
+      for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+        const Demonstration recording = record(scene, seed);
+        const FitResult fit = fitModel(claimedArm(), {&recording});
+        EXPECT_NE(fit.undetermined.find("expected at least 2 s, a second of it in one piece, that one payload"),
+                  std::string::npos)
+            << side << ", " << duration << " s: " << fit.undetermined << fit.duration;
+      }
+    }
+  }
+}
+
 TEST(FitModelTest, TakesTheGivenPartsAndNoOthers) {
   Scene scene;
   scene.hand = handWithin(8.0, 16.0);

@@ -62,7 +62,7 @@ struct FitResult {
 ///
 /// Where no hand is, if not told: the longest part of the recordings, in windows of a quarter of a second, that one set
 /// of values explains to within `model_error` (or five times the noise of the sensors), sought from each stretch of two
-/// seconds; then only what lies within three times the residual that is usual there. Assumed is, so, that a hand's
+/// seconds, or of one if that finds none; then only what lies within three times the residual that is usual there. Assumed is, so, that a hand's
 /// torque does not look like a payload, a bias or friction for longer than the hand is away: it goes wrong where
 /// someone rests a steady weight on the tool for most of the recording. A joint that stands still with friction says
 /// nothing of the torque on it, and does not count.
