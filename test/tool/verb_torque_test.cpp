@@ -285,6 +285,25 @@ TEST(VerbTorqueTest, GivenPartsInWhichAHandPushesAreDoubted) {
   EXPECT_TRUE(run.exists("arm.yaml")) << "a finding, not a refusal";
 }
 
+TEST(VerbTorqueTest, AJointThatTellsNothingHasNothingLeftToPrint) {
+  const ToolRun run;
+  const RobotModel model(
+      describeRobotFile(DEMO_LOGGER_SOURCE_DIR "/urdf/two_link.urdf", {"base_link", "tool_tip", {}, 9.81}));
+  std::string csv = "time,q_joint_1,q_joint_2,tau_joint_1,tau_joint_2\n";
+  for (double t = 0.0; t < 6.0; t += 0.01) {
+    const Eigen::Vector2d q(0.8 * std::sin(1.5 * t), 0.4), dq(1.2 * std::cos(1.5 * t), 0.0);
+    const Eigen::VectorXd torque = model.inverseDynamics(q, dq, Eigen::Vector2d(-1.8 * std::sin(1.5 * t), 0.0));
+    csv += std::to_string(t) + "," + std::to_string(q[0]) + ",0.4," + std::to_string(torque[0]) + "," +
+           std::to_string(torque[1]) + "\n";
+  }
+  run.write("still.csv", csv);
+  const auto outcome =
+      run("torque still.csv -o out.csv --fit arm.yaml --fit-friction --hand-free 0:6 --side motor --effort instant" +
+          kTwoLink);
+  EXPECT_NE(outcome.out.find("), nothing told N m or N\n"), std::string::npos) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.out.find("nan"), std::string::npos) << outcome.out;
+}
+
 TEST(VerbTorqueTest, AControlPeriodThatNoArmHasIsRefused) {
   const ToolRun run;
   run.write("g.csv", upright(50));
