@@ -12,8 +12,8 @@
 
 #include "body_inertia.h"
 #include "demo_logger/trajectory/error.h"
-#include "demo_logger/trajectory/regular_file.h"
 #include "demo_logger/trajectory/print.h"
+#include "demo_logger/trajectory/regular_file.h"
 #include "joint_named.h"
 #include "locked_joints.h"
 #include "sha256.h"

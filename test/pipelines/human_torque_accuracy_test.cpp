@@ -25,6 +25,18 @@ double offBy(const TaughtRecording& recording, const CalibratedArm& arm = asItIs
   return percentOff(recording, jointColumns(recovered(recording, arm), "tau_h_"));
 }
 
+TEST(HumanTorqueAccuracyTest, ARowWithoutATorqueIsNotPassedOver) {
+  TaughtRecording recording;
+  recording.taught_to = 1.0;
+  recording.log.time = {0.0, 0.5, 0.6, 1.0};
+  recording.torque = Eigen::MatrixXd::Constant(4, 7, 2.0);
+  Eigen::MatrixXd found = Eigen::MatrixXd::Constant(4, 7, 2.1);
+  found.row(0).setConstant(std::nan(""));  // at the edge, where a smoother knows one side only
+  EXPECT_NEAR(percentOff(recording, found), 5.0, 1e-9);
+  found(2, 3) = std::nan("");
+  EXPECT_TRUE(std::isnan(percentOff(recording, found)));
+}
+
 TEST(HumanTorqueAccuracyTest, NothingIsLostButWhatTheIntegratorLoses) {
   Teaching teaching;
   EXPECT_LT(offBy(teach(teaching)), 0.02);
