@@ -65,9 +65,9 @@ class Recovery {
     for (Index k = 0; k < rows; ++k) recoverRow(first + k, k, motion);
   }
 
-  /// The model, if its friction counts. Where efforts were measured behind the friction, they jump as the accelerations
-  /// do, and what smoothing does to both cancels.
-  const RobotModel* modelWithFriction() const { return shows_drives_ ? &model_ : nullptr; }
+  /// With the friction that counts. Where efforts were measured behind it, they jump as the accelerations do, and what
+  /// smoothing does to both cancels.
+  const RobotModel& model() const { return model_; }
 
   /// Root of the mean square over all segments.
   std::vector<double> encoderNoise() const {
@@ -192,7 +192,7 @@ HumanTorqueSummary addHumanTorque(const CalibratedArm& arm, Demonstration& demon
   for (const RowRange& range :
        rangesWithoutSilence(demonstration.time, joints.position, options.max_gap, summary.notes)) {
     recovery.recover(
-        smoothArm(demonstration.time, joints, range, meaning, MeasuredEfforts::smoothed, recovery.modelWithFriction()));
+        smoothArm(demonstration.time, joints, range, meaning, MeasuredEfforts::smoothed, &recovery.model()));
   }
 
   const Index n = joints.position.cols();
