@@ -65,8 +65,8 @@ class Recovery {
     for (Index k = 0; k < rows; ++k) recoverRow(first + k, k, motion);
   }
 
-  /// With the friction that counts. Where efforts were measured behind it, they jump as the accelerations do, and what
-  /// smoothing does to both cancels.
+  /// With the friction that efforts of this side show. Where they were measured behind it, they jump as the
+  /// accelerations do, and what smoothing does to both cancels.
   const RobotModel& model() const { return model_; }
 
   /// Root of the mean square over all segments.
