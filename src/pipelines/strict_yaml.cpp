@@ -38,14 +38,16 @@ std::string shown(const YAML::Node& node) {
 
 StrictYaml::StrictYaml(std::string file, std::string prefix, const YAML::Node& node)
     : file_(std::move(file)), prefix_(std::move(prefix)), line_(node.Mark().line + 1) {
+  const auto refuseKey = [this](const YAML::Node& key, const std::string& why) {
+    throw FileError(file_ + ":" + std::to_string(key.Mark().line + 1) + ": " + why);
+  };
   for (const auto& entry : node) {
-    const std::string place = file_ + ":" + std::to_string(entry.first.Mark().line + 1) + ": ";
-    if (!entry.first.IsScalar()) throw FileError(place + "a key is " + shown(entry.first) + ", expected a word.");
-    const std::string& key = entry.first.Scalar();
-    if (!values_.emplace(key, entry.second).second) {
-      throw FileError(place + prefix_ + key + " is there twice, expected once.");
+    const YAML::Node& key = entry.first;
+    if (!key.IsScalar()) refuseKey(key, "a key is " + shown(key) + ", expected a word.");
+    if (!values_.emplace(key.Scalar(), entry.second).second) {
+      refuseKey(key, prefix_ + key.Scalar() + " is there twice, expected once.");
     }
-    keys_.push_back(key);
+    keys_.push_back(key.Scalar());
   }
 }
 
