@@ -62,18 +62,18 @@ struct FitResult {
 ///
 /// Where no hand is, if not told: the longest part of the recordings, in windows of a quarter of a second, that one set
 /// of values explains to within `model_error` (or five times the noise of the sensors), sought from each stretch of two
-/// seconds, or of one if that finds none; then only what lies within three times the residual that is usual there. Assumed is, so, that a hand's
-/// torque does not look like a payload, a bias or friction for longer than the hand is away: it goes wrong where
-/// someone rests a steady weight on the tool for most of the recording. A joint that stands still with friction says
-/// nothing of the torque on it, and does not count.
+/// seconds, or of one if that finds none; then only what lies within three times the residual that is usual there.
+/// Assumed is, so, that a hand's torque does not look like a payload, a bias or friction for longer than the hand is
+/// away: it goes wrong where someone rests a steady weight on the tool for most of the recording. A joint that stands
+/// still with friction says nothing of the torque on it, and does not count.
 ///
 /// With `bodies`, where no hand is and after all that, the ten mass properties of every body take the payload's place,
 /// each held to the description's by 30 % of its mass, 3 cm of its centre and as much of its radius of gyration (the
 /// last one by a payload besides). Most of them are only known together; what is found is what torques need, the ridge
 /// decides the rest. Bodies that cannot be are replaced by the nearest that can, near as the data have it.
 ///
-/// With them, a payload of the start goes into the last body; bodies that the start states stay, and those that it gives
-/// deviations are held by these.
+/// With them, a payload of the start goes into the last body; bodies that the start states stay, and those that it
+/// gives deviations are held by these.
 ///
 /// Throws as addHumanTorque does; also ConfigurationError for an effort that no arm bears.
 FitResult fitModel(const RobotDescription& robot, const std::vector<const Demonstration*>& recordings,

@@ -33,16 +33,16 @@ struct HumanTorqueSummary {
 /// acts half a control period h late: it is taken at t − h/2. One that was measured at an instant is smoothed as the
 /// positions are. Drives and loads of `robot` count; it may be given others by withDrives and withLoad.
 ///
-/// Where friction counts, so does that it holds. As a joint comes to a stand or turns round, its friction changes at once, and so
-/// do the accelerations of all joints that move: they are smoothed as such, with jumps there. A joint that stands hides
-/// anything from −F to F of torque: 0 is taken for that, with the deviation F/√3.
+/// Where friction counts, so does that it holds. As a joint comes to a stand or turns round, its friction changes at
+/// once, and so do the accelerations of all joints that move: they are smoothed as such, with jumps there. A joint that
+/// stands hides anything from −F to F of torque: 0 is taken for that, with the deviation F/√3.
 ///
 /// Adds, or replaces: `tau_h_<joint>`, `tau_h_std_<joint>` (standard deviation of each, which tells the noise of
-/// encoders and torque sensors and what friction hides, not an error of the model), `dq_<joint>` and `ddq_<joint>` (smoothed), and at the tool,
-/// in base axes, the force that explains the torques best, F = (Jᵀ)⁺ τ_h: `tool_fx … tool_tz`, with `tool_condition`,
-/// the ratio of the largest singular value of J to the smallest (metres beside radians): large near a singular posture,
-/// where F says little. NaN where nothing can be said: within silences longer than max_gap, where fewer than
-/// kFewestSamples rows are left between them, or where an effort is missing.
+/// encoders and torque sensors and what friction hides, not an error of the model), `dq_<joint>` and `ddq_<joint>`
+/// (smoothed), and at the tool, in base axes, the force that explains the torques best, F = (Jᵀ)⁺ τ_h: `tool_fx …
+/// tool_tz`, with `tool_condition`, the ratio of the largest singular value of J to the smallest (metres beside
+/// radians): large near a singular posture, where F says little. NaN where nothing can be said: within silences longer
+/// than max_gap, where fewer than kFewestSamples rows are left between them, or where an effort is missing.
 ///
 /// Throws ConfigurationError naming the first joint without a column of positions, efforts that no joint has
 /// (unless gravity_compensated), an unknown side or timing, or held efforts without their control period; ModelError
