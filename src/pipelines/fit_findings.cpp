@@ -131,13 +131,6 @@ class Findings {
     const char* const viscous = joint.type == JointType::prismatic ? " N s/m" : " N m s/rad";
     std::vector<std::string> told, untold, stated;
     JointCalibration found = result_.calibration.joints[joint.name];
-    if (result_.calibration.side == "link") {  // else the description's, which is that of the motors, would count
-      const auto mean = [&](Index which) {
-        return CalibratedValue{problem_.thinkable().mean[problem_.regression().indexOf(i, which)], 0.0};
-      };
-      if (!found.damping) found.damping = mean(TorqueRegression::kDamping);
-      if (!found.friction) found.friction = mean(TorqueRegression::kFriction);
-    }
     const auto describe = [&](Index which, const char* name, const char* unit, std::optional<CalibratedValue>& value) {
       const Index at = problem_.regression().indexOf(i, which);
       if (problem_.thinkable().deviation[at] == 0.0) {

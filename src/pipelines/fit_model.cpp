@@ -54,24 +54,6 @@ TorqueEquations equationsOf(const RobotDescription& robot, const std::vector<con
   return equations;
 }
 
-/// Squares of such values are no numbers any more, or nothing beside them counts.
-void refuseWhatIsNotFinite(const RobotDescription& robot, const TorqueEquations& equations) {
-  constexpr double kMost = 1e9;  // [N m, N]
-  for (Index k = 0; k < equations.rows(); ++k) {
-    for (Index i = 0; i < equations.effort.cols(); ++i) {
-      const double effort = equations.effort(k, i);
-      const ArmJoint& joint = robot.joints[static_cast<std::size_t>(i)];
-      if (!(std::abs(effort) > kMost)) continue;  // NaN is none
-      const auto row = static_cast<std::size_t>(k);
-      throw ConfigurationError("joint '" + joint.name + "' has an effort of " + print(effort) +
-                               (joint.type == JointType::prismatic ? " N" : " N m") + " at " +
-                               print(equations.time[row], 3) + " s of recording " +
-                               std::to_string(equations.recording[row] + 1) + ", expected at most " + print(kMost) +
-                               "; no model explains that");
-    }
-  }
-}
-
 std::vector<bool> rowsWithin(const std::vector<TimeSpan>& spans, const TorqueEquations& equations) {
   std::vector<bool> rows;
   for (const double time : equations.time) {
@@ -125,6 +107,19 @@ std::vector<std::string> doubtsOf(const RobotDescription& robot, const std::vect
   return doubts;
 }
 
+void refuseWhatIsNotFinite(const FitProblem& problem, const Eigen::VectorXd& theta) {
+  if (theta.allFinite()) return;
+  const TorqueEquations& equations = problem.equations();
+  Index row = 0;
+  Index joint = 0;
+  equations.effort.array().isNaN().select(0.0, equations.effort.cwiseAbs()).maxCoeff(&row, &joint);
+  throw ConfigurationError(
+      "no finite model explains the efforts, the largest of which is " + print(equations.effort(row, joint)) +
+      " N m or N of joint '" + problem.robot().joints[static_cast<std::size_t>(joint)].name + "' at " +
+      print(equations.time[static_cast<std::size_t>(row)], 3) + " s of recording " +
+      std::to_string(equations.recording[static_cast<std::size_t>(row)] + 1) + "; are its units right?");
+}
+
 struct Settled {
   RidgeEstimate estimate;
   FitDecisions decisions;
@@ -139,11 +134,7 @@ Settled settle(FitProblem& problem, const std::vector<bool>& rows, const Eigen::
   } while (decide(problem, fit.estimate(), settled.decisions));
   if (problem.hasFreeBodies()) fit.makeBodiesPossible();
   settled.estimate = fit.estimate();
-  if (!settled.estimate.value.allFinite()) {
-    throw ConfigurationError(
-        "the equations of the torques have no finite solution, expected efforts and positions in " +
-        std::string("N m or N and rad or m; are there values beyond all measure?"));
-  }
+  refuseWhatIsNotFinite(problem, settled.estimate.value);
   return settled;
 }
 
@@ -153,7 +144,6 @@ FitResult fitModel(const RobotDescription& robot, const std::vector<const Demons
                    const FitOptions& options) {
   const EffortMetadata meaning = commonMeaning(recordings, options);
   FitProblem problem(robot, options, meaning, equationsOf(robot, recordings, options));
-  refuseWhatIsNotFinite(robot, problem.equations());
   HandFreeTolerance tolerance{options.model_error * problem.usualTorque(), problem.noise()};
   tolerance.largest = tolerance.largest.cwiseMax(kNoiseTimes * tolerance.noise).cwiseMax(problem.resolution());
   std::vector<bool> rows;
@@ -170,7 +160,7 @@ FitResult fitModel(const RobotDescription& robot, const std::vector<const Demons
   result.undetermined = whyUndetermined(result, options);
   if (!result.undetermined.empty()) return result;
 
-  result.residual_start = problem.residual(calibrate(robot, countedStart(options.start, meaning)), rows);
+  result.residual_start = problem.residual(calibrate(robot, options.start), rows);
   if (options.bodies) {
     ParameterFit(problem, rows, tolerance.largest).run();  // for the velocities of friction
     problem.freeBodies();

@@ -29,23 +29,15 @@ double limitOf(double stated, double usual) { return std::isfinite(stated) && st
 
 }  // namespace
 
-ModelCalibration countedStart(const ModelCalibration& start, const EffortMetadata& meaning) {
-  ModelCalibration counted = start;
-  if (start.side != meaning.side) {
-    counted.joints.clear();
-    counted.side = "motor";  // as the description's are
-  }
-  return counted;
-}
-
 FitProblem::FitProblem(const RobotDescription& robot, const FitOptions& options, const EffortMetadata& meaning,
                        TorqueEquations equations)
-    : start_(countedStart(options.start, meaning)), meaning_(meaning), equations_(std::move(equations)) {
+    : start_(options.start), meaning_(meaning), equations_(std::move(equations)) {
+  if (start_.side != meaning.side) start_.joints.clear();
+  start_.side = meaning.side;
   ModelCalibration known = start_;
   known.payload.reset();
   robot_ = calibrate(robot, known).seenAt(meaning.side);
   if (!meaning.includes_gravity) robot_.gravity.setZero();  // compensated beside what the efforts say
-  shows_drives_ = meaning.side == start_.side;
   fits_friction_ = options.friction.value_or(meaning.side == "motor");
   regression_.joints = equations_.position.cols();
   setPrior(options);
@@ -105,9 +97,9 @@ void FitProblem::setDrivePrior(const FitOptions& options) {
     };
     const double friction = fits_friction_ ? kFriction * effort : 0.0;
     set(TorqueRegression::kBias, 0.0, kBias * effort, start.torque_bias);
-    set(TorqueRegression::kDamping, shows_drives_ ? joint.damping : 0.0, friction / velocity, start.damping);
-    set(TorqueRegression::kFriction, shows_drives_ ? joint.friction : 0.0, friction, start.friction);
-    friction_velocity_[i] = shows_drives_ ? joint.friction_velocity : 0.0;
+    set(TorqueRegression::kDamping, joint.damping, friction / velocity, start.damping);
+    set(TorqueRegression::kFriction, joint.friction, friction, start.friction);
+    friction_velocity_[i] = joint.friction_velocity;
     const bool friction_is_free = prior_.deviation[regression_.indexOf(i, TorqueRegression::kFriction)] > 0.0;
     friction_velocity_is_known_.push_back(friction_velocity_[i] > 0.0 || !friction_is_free);
   }
@@ -197,7 +189,6 @@ bool FitProblem::leavesALastBody(const Eigen::VectorXd& theta) const {
 Eigen::VectorXd FitProblem::modelledTorque(const RobotModel& model, Index row) const {
   Eigen::VectorXd torque = model.inverseDynamics(equations_.position.row(row), equations_.velocity.row(row),
                                                  equations_.acceleration.row(row));
-  if (!shows_drives_) return torque;
   for (Index i = 0; i < regression_.joints; ++i) {
     torque[i] += robot_.joints[static_cast<std::size_t>(i)].motor_inertia * equations_.acceleration(row, i);
   }
@@ -232,7 +223,7 @@ void FitProblem::leave(Index at, double value) {
   prior_.deviation[at] = 0.0;
   for (Index i = 0; i < regression_.joints; ++i) {
     if (at != regression_.indexOf(i, TorqueRegression::kFriction)) continue;
-    assumeFrictionVelocity(i, shows_drives_ ? robot_.joints[static_cast<std::size_t>(i)].friction_velocity : 0.0);
+    assumeFrictionVelocity(i, robot_.joints[static_cast<std::size_t>(i)].friction_velocity);
     friction_velocity_is_known_[static_cast<std::size_t>(i)] = true;
   }
 }
@@ -276,10 +267,10 @@ Eigen::VectorXd FitProblem::resolution() const {
 }
 
 std::vector<double> FitProblem::residual(const CalibratedArm& arm, const std::vector<bool>& rows) const {
-  RobotDescription robot = arm.robot;
+  RobotDescription robot = arm.seenAt(meaning_.side);
+  const Eigen::VectorXd bias = arm.biasAt(meaning_.side);
   if (!meaning_.includes_gravity) robot.gravity.setZero();
   const RobotModel model(robot);
-  const bool shows_drives = arm.drives_side == meaning_.side;
   const Index n = regression_.joints;
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd count = Eigen::VectorXd::Zero(n);
@@ -291,11 +282,9 @@ std::vector<double> FitProblem::residual(const CalibratedArm& arm, const std::ve
     for (Index i = 0; i < n; ++i) {
       if (!regression_.says(k, i)) continue;
       const ArmJoint& joint = robot.joints[static_cast<std::size_t>(i)];
-      if (shows_drives) {
-        torque[i] += arm.torque_bias[i] + joint.motor_inertia * equations_.acceleration(k, i) +
-                     joint.damping * equations_.velocity(k, i) +
-                     joint.friction * signAt(k, i, joint.friction_velocity).mean;
-      }
+      torque[i] += bias[i] + joint.motor_inertia * equations_.acceleration(k, i) +
+                   joint.damping * equations_.velocity(k, i) +
+                   joint.friction * signAt(k, i, joint.friction_velocity).mean;
       squares[i] += std::pow(equations_.effort(k, i) - torque[i], 2);
       count[i] += 1.0;
     }

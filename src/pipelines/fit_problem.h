@@ -11,10 +11,6 @@
 
 namespace demo_logger {
 
-/// A start, without the biases and drives of efforts measured at the other side of the gears, which count for no
-/// others: then the description's own are the start.
-ModelCalibration countedStart(const ModelCalibration& start, const EffortMetadata& meaning);
-
 /// The equations of fitModel's comment for one arm: what is known of their parameters beforehand, their columns, and
 /// how the payload's own inertia, which is not linear in m and m c, is taken into account.
 class FitProblem {
@@ -89,7 +85,8 @@ class FitProblem {
   void findWhatSays();
   Eigen::VectorXd modelledTorque(const RobotModel& model, Eigen::Index row) const;
 
-  ModelCalibration start_;  // as far as it counts for such efforts
+  ModelCalibration
+      start_;  // without drives of efforts measured at the other side of the gears, which count for no others
   RobotDescription robot_;  // with known bodies and drives of the start, without its payload unless bodies are free
   EffortMetadata meaning_;
   TorqueEquations equations_;
@@ -99,7 +96,6 @@ class FitProblem {
   std::vector<bool> friction_velocity_is_known_;
   Eigen::Matrix3d payload_inertia_ = Eigen::Matrix3d::Zero();  // about its centre, where the start states it
   PayloadForm payload_form_ = PayloadForm::weight;
-  bool shows_drives_ = false;
   bool fits_friction_ = false;
 };
 
