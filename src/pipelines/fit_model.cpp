@@ -126,8 +126,7 @@ struct Settled {
 };
 
 /// Until nothing of the estimate has to be taken otherwise than it is.
-Settled settle(FitProblem& problem, const std::vector<bool>& rows, const Eigen::VectorXd& largest) {
-  ParameterFit fit(problem, rows, largest);
+Settled settle(FitProblem& problem, ParameterFit& fit) {
   Settled settled;
   do {
     fit.run();
@@ -150,7 +149,8 @@ FitResult fitModel(const RobotDescription& robot, const std::vector<const Demons
   if (options.hand_free.empty()) {
     rows = findHandFreeRows(problem.equations(), problem.regression(), tolerance, problem.prior());
     FitProblem known = problem;
-    settle(known, rows, tolerance.largest);
+    ParameterFit fit(known, rows, tolerance.largest);
+    settle(known, fit);
     rows = keepUsualRows(known.equations(), known.regression(), tolerance, problem.prior(), rows);
   } else {
     rows = rowsWithin(options.hand_free, problem.equations());
@@ -161,11 +161,12 @@ FitResult fitModel(const RobotDescription& robot, const std::vector<const Demons
   if (!result.undetermined.empty()) return result;
 
   result.residual_start = problem.residual(calibrate(robot, options.start), rows);
+  ParameterFit fit(problem, rows, tolerance.largest);
   if (options.bodies) {
-    ParameterFit(problem, rows, tolerance.largest).run();  // for the velocities of friction
+    fit.run();  // for the velocities of friction, and what residuals are like
     problem.freeBodies();
   }
-  const Settled settled = settle(problem, rows, tolerance.largest);
+  const Settled settled = settle(problem, fit);
   describeFit(problem, settled.estimate, settled.decisions, options, meaning, result);
   result.residual = problem.residual(calibrate(robot, result.calibration), rows);
   if (!options.hand_free.empty()) result.doubts = doubtsOf(robot, result.residual, tolerance.largest);

@@ -2,16 +2,17 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
+#include <array>
+#include <limits>
 
 namespace demo_logger {
 namespace {
 
 using Index = Eigen::Index;
 
-constexpr Index kValues = 10;    // of a body
-constexpr double kLeast = 1e-9;  // [kg m², kg] of every body in every direction, so that rounding takes none away
+constexpr Index kValues = 10;     // of a body
+constexpr double kInside = 1e-6;  // of the largest eigenvalue, to start from
+constexpr double kLeast = 1e-9;   // [kg m², kg] of every body in every direction, so that rounding takes none away
 
 Eigen::Matrix4d pseudoInertia(const LinearInertia& body) {
   Eigen::Matrix3d I;
@@ -32,93 +33,96 @@ LinearInertia fromPseudoInertia(const Eigen::Matrix4d& J) {
   return body;
 }
 
-/// The body whose pseudo-inertia is L Lᵀ and a hair more, L lower triangular with eˣ on its diagonal: any ten numbers
-/// make a possible body (Rucker and Wensing 2022).
-LinearInertia bodyOf(const Eigen::Ref<const Eigen::VectorXd>& x) {
-  Eigen::Matrix4d L = Eigen::Matrix4d::Zero();
-  Index at = 0;
-  for (Index i = 0; i < 4; ++i) {
-    for (Index j = 0; j < i; ++j) L(i, j) = x[at++];
-    L(i, i) = std::exp(x[at++]);
-  }
-  return fromPseudoInertia(L * L.transpose() + kLeast * Eigen::Matrix4d::Identity());
-}
-
-/// The other way; what is not possible, or hardly, is made so.
-Eigen::VectorXd coordinatesOf(const LinearInertia& body) {
+/// Well inside of what can be; what is not, or hardly, is made so.
+LinearInertia inside(const LinearInertia& body) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(pseudoInertia(body));
-  const Eigen::Vector4d values = eigen.eigenvalues().array().max(2.0 * kLeast) - kLeast;
-  const Eigen::Matrix4d J = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
-  const Eigen::Matrix4d L = J.llt().matrixL();
-  Eigen::VectorXd x(kValues);
-  Index at = 0;
-  for (Index i = 0; i < 4; ++i) {
-    for (Index j = 0; j < i; ++j) x[at++] = L(i, j);
-    x[at++] = std::log(L(i, i));
-  }
-  return x;
+  const Eigen::Vector4d values = eigen.eigenvalues().cwiseMax(kInside * eigen.eigenvalues().maxCoeff() + 2.0 * kLeast);
+  return fromPseudoInertia(eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose());
 }
 
-Eigen::VectorXd bodiesOf(const Eigen::VectorXd& x) {
-  Eigen::VectorXd bodies(x.size());
-  for (Index at = 0; at < x.size(); at += kValues) bodies.segment<kValues>(at) = bodyOf(x.segment(at, kValues));
-  return bodies;
+/// Of −log det of each body's pseudo-inertia, less a hair, which bars the way to what cannot be. It is convex.
+struct Barrier {
+  double value = 0.0;  // infinite beyond
+  Eigen::VectorXd slope;
+  Eigen::MatrixXd curvature;
+};
+
+double barrierAt(const Eigen::VectorXd& bodies) {
+  double value = 0.0;
+  for (Index at = 0; at < bodies.size(); at += kValues) {
+    const Eigen::LLT<Eigen::Matrix4d> root(pseudoInertia(bodies.segment<kValues>(at)) -
+                                           kLeast * Eigen::Matrix4d::Identity());
+    if (root.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+    value -= 2.0 * root.matrixLLT().diagonal().array().log().sum();
+  }
+  return value;
 }
 
-/// ∂φ/∂x, a block for each body.
-Eigen::MatrixXd slopes(const Eigen::VectorXd& x) {
-  constexpr double kAside = 1e-6;
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(x.size(), x.size());
-  for (Index i = 0; i < x.size(); ++i) {
-    const Index at = i / kValues * kValues;
-    Eigen::VectorXd ahead = x.segment(at, kValues);
-    Eigen::VectorXd behind = ahead;
-    ahead[i - at] += kAside;
-    behind[i - at] -= kAside;
-    J.block(at, i, kValues, 1) = (bodyOf(ahead) - bodyOf(behind)) / (2.0 * kAside);
+Barrier barrierWithSlopes(const Eigen::VectorXd& bodies) {
+  Barrier barrier{barrierAt(bodies), Eigen::VectorXd::Zero(bodies.size()),
+                  Eigen::MatrixXd::Zero(bodies.size(), bodies.size())};
+  for (Index at = 0; at < bodies.size(); at += kValues) {
+    const Eigen::Matrix4d inverse =
+        (pseudoInertia(bodies.segment<kValues>(at)) - kLeast * Eigen::Matrix4d::Identity()).inverse();
+    std::array<Eigen::Matrix4d, kValues> change;  // J⁻¹ ∂J/∂φ
+    for (Index k = 0; k < kValues; ++k) {
+      change[static_cast<std::size_t>(k)] = inverse * pseudoInertia(LinearInertia::Unit(k));
+      barrier.slope[at + k] = -change[static_cast<std::size_t>(k)].trace();
+    }
+    for (Index k = 0; k < kValues; ++k) {
+      for (Index l = 0; l < kValues; ++l) {
+        barrier.curvature(at + k, at + l) =
+            (change[static_cast<std::size_t>(k)] * change[static_cast<std::size_t>(l)]).trace();
+      }
+    }
   }
-  return J;
+  return barrier;
 }
 
 }  // namespace
 
 bool isPossible(const LinearInertia& body) { return pseudoInertia(body).llt().info() == Eigen::Success; }
 
+/// The problem is convex in φ, so Newton's steps behind an ever steeper barrier come to the one that is nearest.
 Eigen::VectorXd nearestPossibleBodies(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& covariance,
                                       const Eigen::VectorXd& before) {
-  constexpr int kMostSteps = 500;
-  constexpr double kEnough = 1e-9;  // of the distance, that a step must gain
-  Eigen::VectorXd x(estimate.size());
-  for (Index at = 0; at < x.size(); at += kValues) {
+  constexpr int kMostSteps = 60;        // for one barrier
+  constexpr double kSettled = 1e-6;     // Newton's decrement, squared
+  constexpr double kSteeper = 0.1;      // from one barrier to the next
+  constexpr double kEnough = 1e-7;      // [deviations²] farther than need be
+  constexpr double kLeastStep = 1e-10;  // of Newton's
+  bool is_possible = true;
+  Eigen::VectorXd bodies = estimate;
+  for (Index at = 0; at < bodies.size(); at += kValues) {
+    is_possible = is_possible && isPossible(estimate.segment<kValues>(at));
     const LinearInertia own = estimate.segment<kValues>(at);
-    const LinearInertia start = isPossible(own) ? own : LinearInertia(before.segment<kValues>(at));
-    x.segment(at, kValues) = coordinatesOf(start);
+    bodies.segment<kValues>(at) = inside(isPossible(own) ? own : LinearInertia(before.segment<kValues>(at)));
   }
-  // Levenberg and Marquardt, in units in which C is the identity.
+  if (is_possible) return estimate;
+
   const Eigen::LLT<Eigen::MatrixXd> whitening(covariance);
-  const auto distance = [&](const Eigen::VectorXd& bodies) -> Eigen::VectorXd {
-    return whitening.matrixL().solve(bodies - estimate);
+  const Eigen::MatrixXd information = whitening.solve(Eigen::MatrixXd::Identity(bodies.size(), bodies.size()));
+  const auto distance = [&](const Eigen::VectorXd& other) {
+    return whitening.matrixL().solve(other - estimate).squaredNorm();
   };
-  Eigen::VectorXd residual = distance(bodiesOf(x));
-  double damping = 1e-3;
-  for (int step = 0; step < kMostSteps && damping < 1e12; ++step) {
-    const Eigen::MatrixXd J = whitening.matrixL().solve(slopes(x));
-    Eigen::MatrixXd H = J.transpose() * J;
-    H.diagonal() *= 1.0 + damping;
-    H.diagonal().array() += 1e-12;
-    const Eigen::VectorXd next = x - H.ldlt().solve(J.transpose() * residual);
-    const Eigen::VectorXd next_residual = distance(bodiesOf(next));
-    if (!(next_residual.squaredNorm() < residual.squaredNorm())) {
-      damping *= 4.0;
-      continue;
+  const double eigenvalues = 0.4 * static_cast<double>(bodies.size());  // four of ten values
+  for (double softness = distance(bodies) / eigenvalues; softness * eigenvalues > kEnough; softness *= kSteeper) {
+    const auto cost = [&](const Eigen::VectorXd& other) { return distance(other) / softness + barrierAt(other); };
+    for (int step = 0; step < kMostSteps; ++step) {
+      const Barrier barrier = barrierWithSlopes(bodies);
+      const Eigen::VectorXd slope = information * (bodies - estimate) * (2.0 / softness) + barrier.slope;
+      const Eigen::MatrixXd curvature = information * (2.0 / softness) + barrier.curvature;
+      const Eigen::VectorXd newton = curvature.ldlt().solve(-slope);
+      const double decrement = -slope.dot(newton);
+      if (!(decrement > kSettled)) break;
+      double length = 1.0;
+      const double now = distance(bodies) / softness + barrier.value;
+      while (length > kLeastStep && !(cost(bodies + length * newton) < now - 1e-4 * length * decrement)) length *= 0.5;
+      if (length <= kLeastStep) break;  // rounding
+      bodies += length * newton;
     }
-    const bool is_enough = next_residual.squaredNorm() > (1.0 - kEnough) * residual.squaredNorm();
-    x = next;
-    residual = next_residual;
-    damping = std::max(1e-9, damping / 3.0);
-    if (is_enough) break;
   }
-  return bodiesOf(x);
+  return bodies;
 }
 
 }  // namespace demo_logger
