@@ -100,9 +100,12 @@ std::vector<std::string> doubtsOf(const RobotDescription& robot, const std::vect
     const double tolerated = tolerance[static_cast<Index>(i)];
     if (!(residual[i] > kDoubtfulTimes * tolerated)) continue;
     const std::string unit = robot.joints[i].type == JointType::prismatic ? " N" : " N m";
-    doubts.push_back(robot.joints[i].name + ": what is left in the given parts is " + print(residual[i], 3) + unit +
-                     " (root mean square), where the model may be off by " + print(tolerated, 3) + unit +
-                     "; is the hand really away there?");
+    doubts.push_back(std::string(robot.joints[i].name)
+                         .append(": what is left in the given parts is ")
+                         .append(print(residual[i], 3) + unit)
+                         .append(" (root mean square), where the model may be off by ")
+                         .append(print(tolerated, 3) + unit)
+                         .append("; is the hand really away there?"));
   }
   return doubts;
 }
