@@ -100,12 +100,13 @@ DemoLoggerNode::DemoLoggerNode(const ros::NodeHandle& node, const ros::NodeHandl
                names.advertiseService("stop", &DemoLoggerNode::onStop, this),
                names.advertiseService("discard", &DemoLoggerNode::onDiscard, this),
                names.advertiseService("label", &DemoLoggerNode::onLabel, this)};
-  if (buttons_.any()) {
-    joy_subscriber_ = node_.subscribe("joy", 100, &DemoLoggerNode::onJoy, this);
-  }
+  listenToButtons();
   // By the steady clock: a step of the system's, or a simulation that stands still, must not silence the node.
   timers_ = {node_.createSteadyTimer(ros::WallDuration(kStatusCheckPeriod),
-                                     [this](const ros::SteadyTimerEvent&) { publishStatusIfChanged(); }),
+                                     [this](const ros::SteadyTimerEvent&) {
+                                       listenToButtons();
+                                       publishStatusIfChanged();
+                                     }),
              node_.createSteadyTimer(ros::WallDuration(kStatusPeriod),
                                      [this](const ros::SteadyTimerEvent&) { everySecond(); })};
   for (const Recovered& left : recorder_.recovered()) {
@@ -165,6 +166,12 @@ bool DemoLoggerNode::onLabel(Label::Request& request, Label::Response& response)
   response.success = static_cast<std::uint8_t>(reply.success);
   response.message = reply.message;
   return true;
+}
+
+/// Once ROS time has begun: before, nothing could be started, and a button is pressed only once.
+void DemoLoggerNode::listenToButtons() {
+  if (!buttons_.any() || joy_subscriber_ || ros::Time::now().isZero()) return;
+  joy_subscriber_ = node_.subscribe("joy", 100, &DemoLoggerNode::onJoy, this);
 }
 
 void DemoLoggerNode::onJoy(const sensor_msgs::Joy& joy) {

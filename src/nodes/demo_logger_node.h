@@ -47,6 +47,7 @@ class DemoLoggerNode {
   bool onStop(Stop::Request& request, Stop::Response& response);
   bool onDiscard(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onLabel(Label::Request& request, Label::Response& response);
+  void listenToButtons();
   void onJoy(const sensor_msgs::Joy& joy);
 
   Reply start(const Start::Request& request);
