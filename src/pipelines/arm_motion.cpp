@@ -19,7 +19,6 @@ using Index = Eigen::Index;
 namespace {
 
 constexpr double kMostPosition = 1e4;  // [rad or m] beyond where any joint is
-constexpr double kMostEffort = 1e6;    // [N m or N] beyond what any motor gives
 
 /// Without a sidecar the unit follows from the name, which knows of no joints that slide.
 void requireUnit(const Column& column, const JointQuantity& quantity, const ArmJoint& joint) {
@@ -69,7 +68,7 @@ RecordedJoints readJoints(const RobotDescription& robot, const Demonstration& de
     };
     take(*position, kPosition, kMostPosition, joints.position);
     const auto effort = findJointColumn(demonstration.columns, kEffort, names[i]);
-    if (effort) take(*effort, kEffort, kMostEffort, joints.effort);
+    if (effort) take(*effort, kEffort, kMostTorque, joints.effort);
     if (joints.effort.col(column).array().isNaN().all()) joints.without_effort.push_back(names[i]);
     joints.has_effort_columns = joints.has_effort_columns || effort.has_value();
   }

@@ -7,12 +7,12 @@
 #include "demo_logger/trajectory/error.h"
 #include "demo_logger/trajectory/not_a_number.h"
 #include "demo_logger/trajectory/print.h"
+#include "joint_columns.h"
 
 namespace demo_logger {
 namespace {
 
-constexpr double kMostTorque = 1e6;  // [N m or N] beyond what any motor gives; an effort that says so is none
-constexpr double kAhead = 1e-4;      // [rad or m] along q̇, where M is looked at to tell Ṁ
+constexpr double kAhead = 1e-4;  // [rad or m] along q̇, where M is looked at to tell Ṁ
 
 /// Coulomb friction that does not change its sign with the noise of a filtered velocity.
 RobotDescription withGentleFriction(RobotDescription robot) {

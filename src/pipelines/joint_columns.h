@@ -20,6 +20,9 @@ struct JointQuantity {
 constexpr JointQuantity kPosition = {"q_", "position", "rad", "m"};
 constexpr JointQuantity kEffort = {"tau_", "effort", "N m", "N"};
 
+/// [N m or N] beyond what any motor gives: an effort that says so is none.
+constexpr double kMostTorque = 1e6;
+
 /// How the source of a column begins that was made from positions by a smoother.
 constexpr const char* kSmoothed = "smoothed/";
 

@@ -136,6 +136,18 @@ Dense densePosterior(const std::vector<double>& time, const Eigen::VectorXd& z, 
   return dense;
 }
 
+void expectPosterior(const SmoothedMotion& motion, const Dense& dense) {
+  for (Eigen::Index k = 0; k < motion.position.size(); ++k) {
+    const Eigen::Matrix3d& covariance = motion.covariance[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(motion.position[k], dense.mean(0, k), 1e-3 * dense.deviation(0, k)) << k;
+    EXPECT_NEAR(motion.velocity[k], dense.mean(1, k), 1e-3 * dense.deviation(1, k)) << k;
+    EXPECT_NEAR(motion.acceleration[k], dense.mean(2, k), 1e-3 * dense.deviation(2, k)) << k;
+    for (int d = 0; d < 3; ++d) {
+      EXPECT_NEAR(std::sqrt(covariance(d, d)) / dense.deviation(d, k), 1.0, 1e-3) << d << " at " << k;
+    }
+  }
+}
+
 TEST(MotionSmootherTest, AgreesWithThePosteriorByLinearAlgebraOverAllSamples) {
   const std::vector<double> time = irregularTimes(60, 0.02, 2);
   std::mt19937 random(3);
@@ -145,15 +157,7 @@ TEST(MotionSmootherTest, AgreesWithThePosteriorByLinearAlgebraOverAllSamples) {
   const SmoothedMotion motion = smoothMotion(time, position, 0.08);
   const double r = motion.measurement_deviation * motion.measurement_deviation;
   const Dense dense = densePosterior(time, position, motion.snap_density, r);
-  for (int k = 0; k < 60; ++k) {
-    const Eigen::Matrix3d& covariance = motion.covariance[static_cast<std::size_t>(k)];
-    EXPECT_NEAR(motion.position[k], dense.mean(0, k), 1e-3 * dense.deviation(0, k)) << k;
-    EXPECT_NEAR(motion.velocity[k], dense.mean(1, k), 1e-3 * dense.deviation(1, k)) << k;
-    EXPECT_NEAR(motion.acceleration[k], dense.mean(2, k), 1e-3 * dense.deviation(2, k)) << k;
-    for (int d = 0; d < 3; ++d) {
-      EXPECT_NEAR(std::sqrt(covariance(d, d)) / dense.deviation(d, k), 1.0, 1e-3) << d << " at " << k;
-    }
-  }
+  expectPosterior(motion, dense);
 }
 
 TEST(MotionSmootherTest, AJumpAtAKnownInstantIsExactlyAsLinearAlgebraHasIt) {
@@ -174,13 +178,7 @@ TEST(MotionSmootherTest, AJumpAtAKnownInstantIsExactlyAsLinearAlgebraHasIt) {
   EXPECT_EQ(motion.time_constant, before.time_constant);
   const Dense dense =
       densePosterior(time, position, motion.snap_density, std::pow(motion.measurement_deviation, 2), kJump, kVariance);
-  for (int k = 0; k < 60; ++k) {
-    const Eigen::Matrix3d& covariance = motion.covariance[static_cast<std::size_t>(k)];
-    EXPECT_NEAR(motion.acceleration[k], dense.mean(2, k), 1e-3 * dense.deviation(2, k)) << k;
-    for (int d = 0; d < 3; ++d) {
-      EXPECT_NEAR(std::sqrt(covariance(d, d)) / dense.deviation(d, k), 1.0, 1e-3) << d << " at " << k;
-    }
-  }
+  expectPosterior(motion, dense);
 }
 
 TEST(MotionSmootherTest, TheEvidenceOfAJumpIsTheLikelihoodOfOne) {
